@@ -9,6 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "experiment/process/world_programs.hpp"
+#include "experiment/run/runner.hpp"
+#include "experiment/run/version.hpp"
+#include "experiment/world_files/world_by_name.hpp"
 #include "messages/yaml/message_writer.hpp"
 #include "python/bindings/bindings.hpp"
 #include "python/bindings/gil.hpp"
@@ -16,10 +20,6 @@
 #include "python/world/error.hpp"
 #include "sim/base/log.hpp"
 #include "sim/config/shipped_files.hpp"
-#include "tools/experiment/process/world_programs.hpp"
-#include "tools/experiment/run/runner.hpp"
-#include "tools/experiment/run/version.hpp"
-#include "tools/experiment/world_files/world_by_name.hpp"
 
 namespace py = pybind11;
 

@@ -58,7 +58,7 @@ struct MetricKind {
   std::vector<ParamInfo> keys() const;
 };
 
-/// Registry of all types of metrics, filled before main by SHOAL_METRIC (tools/experiment/score/metric_registry.hpp),
+/// Registry of all types of metrics, filled before main by SHOAL_METRIC (experiment/score/metric_registry.hpp),
 /// as DeviceRegistry is.
 class MetricRegistry {
  public:

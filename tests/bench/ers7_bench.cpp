@@ -14,6 +14,7 @@
 
 #include "devices/motion/joint_group.hpp"
 #include "devices/motion/servo_bank.hpp"
+#include "motion/analysis/perturbed_world.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/ode/ode_library.hpp"
 #include "sim/ode/ode_math.hpp"
@@ -21,7 +22,6 @@
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/project_paths.hpp"
-#include "tools/experiment/motion/perturbed_world.hpp"
 
 namespace {
 

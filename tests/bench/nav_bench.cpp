@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tools/navigation/estimator/estimator_registry.hpp"
+#include "autonomy/cooperative/estimator/estimator_registry.hpp"
 
 namespace {
 

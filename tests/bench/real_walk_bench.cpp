@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "experiment/optimise/cma_es.hpp"
+#include "motion/analysis/real_walk.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/project_paths.hpp"
-#include "tools/experiment/motion/real_walk.hpp"
-#include "tools/experiment/optimise/cma_es.hpp"
 
 namespace {
 

@@ -9,9 +9,9 @@
 #include <memory>
 #include <string>
 
+#include "experiment/snapshot/snapshot_ring.hpp"
 #include "sim/world/world_state.hpp"
-#include "tools/experiment/bench/bench_run.hpp"
-#include "tools/experiment/snapshot/snapshot_ring.hpp"
+#include "verification/bench/bench_run.hpp"
 
 namespace {
 

@@ -11,8 +11,8 @@
 #include "sim/world/world_state.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
-#include "tools/experiment/bench/bench_run.hpp"
-#include "tools/experiment/bench/rover_arena.hpp"
+#include "verification/bench/bench_run.hpp"
+#include "verification/bench/rover_arena.hpp"
 
 namespace {
 

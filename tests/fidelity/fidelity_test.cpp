@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/experiment/fidelity/fidelity.hpp"
+#include "verification/fidelity/fidelity.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@
 #include "sim/world_file/load_world.hpp"
 #include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
-#include "tools/experiment/fidelity/fidelity_report.hpp"
+#include "verification/fidelity/fidelity_report.hpp"
 
 namespace {
 

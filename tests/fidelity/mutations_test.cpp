@@ -12,7 +12,7 @@
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
-#include "tools/experiment/fidelity/fidelity_mutations.hpp"
+#include "verification/fidelity/fidelity_mutations.hpp"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "autonomy/acomms/acoustic_frame.hpp"
+#include "autonomy/acomms/state_packet.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
-#include "tools/autonomy/acomms/acoustic_frame.hpp"
-#include "tools/autonomy/acomms/state_packet.hpp"
 
 // Frames that the example programs take from acoustic modems.  The checksum is made right half of the time.
 

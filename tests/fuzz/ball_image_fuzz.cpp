@@ -2,9 +2,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "autonomy/vision/ball_detector.hpp"
 #include "shoal/message_codec.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
-#include "tools/autonomy/vision/ball_detector.hpp"
 
 // An image message of any sizes, in which a program looks for a ball.
 

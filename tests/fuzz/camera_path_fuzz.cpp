@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/fuzz/fuzz_input.hpp"
 #include "tests/fuzz/scratch_file.hpp"
-#include "tools/experiment/film/camera_path.hpp"
-#include "tools/experiment/film/overlay.hpp"
+#include "viewer/film/camera_path.hpp"
+#include "viewer/film/overlay.hpp"
 
 // Key poses of the camera of a film, and its list of overlays.
 

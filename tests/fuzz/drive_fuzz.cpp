@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 
+#include "experiment/drive/drive_error.hpp"
+#include "experiment/drive/drive_keys.hpp"
+#include "experiment/drive/gamepad.hpp"
+#include "experiment/terminal/key_events.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
-#include "tools/experiment/drive/drive_error.hpp"
-#include "tools/experiment/drive/drive_keys.hpp"
-#include "tools/experiment/drive/gamepad.hpp"
-#include "tools/experiment/terminal/key_events.hpp"
-#include "tools/experiment/view/page_drive.hpp"
+#include "viewer/server/page_drive.hpp"
 
 // Events of a gamepad, and the same bytes as keys of a terminal, a profile and a message of a page.
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "experiment/score/trajectory/estimate_file.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
-#include "tools/experiment/trajectory/estimate_file.hpp"
 
 // Estimates of another program: TUM or CSV.
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/log/event_log.hpp"
+#include "experiment/replay/recorded_steps.hpp"
+#include "experiment/replay/replay_log.hpp"
 #include "tests/fuzz/memory_file.hpp"
-#include "tools/experiment/replay/recorded_steps.hpp"
-#include "tools/experiment/replay/replay_log.hpp"
 
 // An LCM event log, as any reader takes it and as a run to repeat.
 

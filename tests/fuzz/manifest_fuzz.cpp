@@ -2,12 +2,12 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "experiment/campaign/manifest.hpp"
+#include "experiment/campaign/study_rows.hpp"
+#include "experiment/study/run_files.hpp"
+#include "experiment/study/study_until.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 #include "tests/fuzz/scratch_file.hpp"
-#include "tools/experiment/campaign/manifest.hpp"
-#include "tools/experiment/campaign/study_rows.hpp"
-#include "tools/experiment/study/run_files.hpp"
-#include "tools/experiment/study/study_until.hpp"
 
 // What someone may have left in the folder of a study: its manifest and the marks of its runs; the table of its
 // results; numbers of runs and the condition that ends a study.

@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "autonomy/known_map/localizer.hpp"
+#include "autonomy/known_map/map_file.hpp"
 #include "shoal/message_codec.hpp"
 #include "tests/fuzz/scratch_file.hpp"
-#include "tools/autonomy/known_map/localizer.hpp"
-#include "tools/autonomy/known_map/map_file.hpp"
 
 // A map in a file: its YAML, and after the first byte of 0 the image `map.png` that it may name.
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "motion/formats/motion_format.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
-#include "tools/experiment/motion_formats/motion_format.hpp"
 
 // Motions in files of other programs.  What is read is a motion; what is written can be read again.
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "experiment/terminal/key_events.hpp"
+#include "motion/record/recorded_motion.hpp"
 #include "sim/motion/motion.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
-#include "tools/experiment/motion_record/recorded_motion.hpp"
-#include "tools/experiment/terminal/key_events.hpp"
 
 // The journal of a recording, and the same bytes as keys of a terminal.
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "experiment/score/trajectory/mrclam_data.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
-#include "tools/experiment/trajectory/mrclam_data.hpp"
 
 // Each file of a MR.CLAM data set.
 

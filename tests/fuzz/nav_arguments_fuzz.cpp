@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "autonomy/cooperative/driver/nav_arguments.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
-#include "tools/navigation/driver/nav_arguments.hpp"
 
 // The arguments of shoal-nav in the world of a record.
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "autonomy/acomms/acoustic_frame.hpp"
+#include "autonomy/cooperative/driver/nav_frame.hpp"
+#include "autonomy/cooperative/estimator/estimator_registry.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
-#include "tools/autonomy/acomms/acoustic_frame.hpp"
-#include "tools/navigation/driver/nav_frame.hpp"
-#include "tools/navigation/estimator/estimator_registry.hpp"
 
 // Frames that shoal-nav takes from acoustic modems, and their payloads, which each algorithm receives.
 

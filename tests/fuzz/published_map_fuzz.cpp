@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 
+#include "experiment/score/map/published_map.hpp"
 #include "shoal/message_codec.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
-#include "tools/experiment/map/published_map.hpp"
 
 // An occupancy grid on the bus, which a metric and `shoal map` read.
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "experiment/results/run_record.hpp"
+#include "experiment/snapshot/snapshot_pieces.hpp"
+#include "experiment/study/study_curves.hpp"
+#include "experiment/terminal/key_sequences.hpp"
 #include "shoal/message_schema.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 #include "tests/fuzz/scratch_file.hpp"
-#include "tools/experiment/results/run_record.hpp"
-#include "tools/experiment/snapshot/snapshot_pieces.hpp"
-#include "tools/experiment/study/study_curves.hpp"
-#include "tools/experiment/terminal/key_sequences.hpp"
 
 // Results that are read again (summary.json, errors.csv), pieces of a snapshot in a log, keys of a terminal.
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "experiment/snapshot/snapshot_file.hpp"
 #include "sim/base/crc32.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
-#include "tools/experiment/snapshot/snapshot_file.hpp"
 
 // The file of a snapshot.  Its checksum is made right: it protects from accidents, not from people.
 

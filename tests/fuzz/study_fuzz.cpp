@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "experiment/study/load_study.hpp"
+#include "experiment/study/study_seeds.hpp"
 #include "messages/yaml/message_writer.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 #include "tests/fuzz/scratch_file.hpp"
-#include "tools/experiment/fidelity/fidelity.hpp"
-#include "tools/experiment/study/load_study.hpp"
-#include "tools/experiment/study/study_seeds.hpp"
+#include "verification/fidelity/fidelity.hpp"
 
 // Files of experiments: studies, cases of the fidelity report and their references.
 

@@ -6,9 +6,9 @@
 #include "bridges/web/view_protocol.hpp"
 #include "bridges/web/web_error.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
-#include "tools/experiment/page_data/look_request.hpp"
-#include "tools/experiment/page_data/message_frame.hpp"
-#include "tools/experiment/page_data/page_request.hpp"
+#include "viewer/page_data/look_request.hpp"
+#include "viewer/page_data/message_frame.hpp"
+#include "viewer/page_data/page_request.hpp"
 
 // Messages of a page: each line is one, to a session of the live page; a line that begins with a zero byte is binary.
 // The whole input is also the payload of a message that is shown on a page.

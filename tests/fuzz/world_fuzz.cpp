@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "experiment/process/process_check.hpp"
 #include "messages/yaml/message_writer.hpp"
 #include "sim/config/warnings.hpp"
 #include "sim/world_file/config_warnings.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
-#include "tools/experiment/process/process_check.hpp"
 
 // A world file from a stranger: read and checked as by `shoal check`, not built.
 

@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "bridges/lcm/lcm_listener.hpp"
+#include "experiment/drive/input_events.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_state_t.hpp"
 #include "shoal/twist_command_t.hpp"
 #include "tests/bridges/web/web_client.hpp"
 #include "tests/system/on_terminal.hpp"
 #include "tests/system/shoal_program.hpp"
-#include "tools/experiment/drive/input_events.hpp"
 
 // `shoal drive`, and driving from the live page.
 

@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
+#include "motion/record/recorded_motion.hpp"
 #include "tests/system/shoal_program.hpp"
-#include "tools/experiment/motion_record/recorded_motion.hpp"
 
 // What the commands of `shoal motion` write, and what they refuse.
 

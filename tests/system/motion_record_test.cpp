@@ -4,10 +4,10 @@
 
 #include <filesystem>
 
+#include "experiment/drive/input_events.hpp"
+#include "motion/record/recorded_motion.hpp"
 #include "tests/system/on_terminal.hpp"
 #include "tests/system/shoal_program.hpp"
-#include "tools/experiment/drive/input_events.hpp"
-#include "tools/experiment/motion_record/recorded_motion.hpp"
 
 // `shoal motion record`.
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "tests/system/shoal_program.hpp"
-#include "tests/tools/experiment/view/view_page.hpp"
+#include "tests/viewer/server/view_page.hpp"
 
 namespace {
 

@@ -54,8 +54,8 @@ void fly(shoal::Client& client) {
 void fly(void (*on_scan)(const shoal::planar_lidar_t&)) {
 """, "}"),
     "class Mine final : public OwnFilterEstimator<Mine> {  // or EstimatorOf<Mine>: all seven functions": ("""
-#include "tools/navigation/estimator/estimator_registry.hpp"
-#include "tools/navigation/filter/own_filter.hpp"
+#include "autonomy/cooperative/estimator/estimator_registry.hpp"
+#include "autonomy/cooperative/filter/own_filter.hpp"
 namespace navigation {
 """, "}"),
 }

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tests/system/shoal_program.hpp"
-#include "tools/experiment/view/log_series.hpp"
+#include "viewer/server/log_series.hpp"
 
 // The plots of a log show what `shoal log csv` prints.
 

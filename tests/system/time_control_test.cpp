@@ -6,13 +6,13 @@
 #include <regex>
 
 #include "bridges/lcm/lcm_listener.hpp"
+#include "experiment/snapshot/snapshot_file.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_control_reply_t.hpp"
 #include "shoal/sim_control_request_t.hpp"
 #include "shoal/sim_vehicle_t.hpp"
 #include "shoal/twist_command_t.hpp"
 #include "tests/system/shoal_program.hpp"
-#include "tools/experiment/snapshot/snapshot_file.hpp"
 
 // Snapshots, rewind, branches and `until` in the real program, asked for over the bus.
 

@@ -62,7 +62,7 @@ class CheckKeys(unittest.TestCase):
 
     def test_studies_have_the_keys_that_are_read(self):
         self.assertEqual(self.yaml("study: x\nworld: y.yaml\nseeds: 1-3"), [])
-        self.assertEqual(self.yaml("study: x\nsead: 1-3"), ["3: unknown key 'sead': tools/experiment/study does not read it"])
+        self.assertEqual(self.yaml("study: x\nsead: 1-3"), ["3: unknown key 'sead': experiment/study does not read it"])
 
     def test_what_is_not_yaml_is_named(self):
         self.assertEqual(self.yaml("a: [1"), ["2: is not YAML: expected ',' or ']', but got '<stream end>'"])

@@ -5,9 +5,9 @@
 #include <set>
 #include <sstream>
 
+#include "sim/base/text_layout.hpp"
 #include "tools/command_line/arguments.hpp"
 #include "tools/command_line/checks.hpp"
-#include "tools/command_line/text_layout.hpp"
 
 namespace command_line {
 
@@ -66,13 +66,13 @@ std::string usage_of(const CLI::App& command, std::size_t columns) {
   const bool places =
       std::any_of(all.begin(), all.end(), [](const CLI::Option* each) { return each->get_positional(); });
   if (!commands_of(command).empty()) text += places ? ", or " + command_path(command) + " COMMAND" : " COMMAND";
-  return wrapped(text, columns, std::min<std::size_t>(begin.size() + 1, 20)) + "\n";
+  return sim::wrapped(text, columns, std::min<std::size_t>(begin.size() + 1, 20)) + "\n";
 }
 
 using Rows = std::vector<std::pair<std::string, std::string>>;
 
 std::string section(const std::string& title, const Rows& rows, std::size_t columns) {
-  return rows.empty() ? "" : "\n" + title + ":\n" + two_columns(rows, columns);
+  return rows.empty() ? "" : "\n" + title + ":\n" + sim::two_columns(rows, columns);
 }
 
 /// Splits a command into pieces that stay on one line: words, quoted texts, options with their values, the remark.
@@ -113,7 +113,7 @@ std::string example_text(const std::string& example, std::size_t columns) {
   std::string text;
   std::size_t used = 1;
   const auto add = [&](const std::string& piece) {
-    const std::size_t width = column_count(piece);
+    const std::size_t width = sim::column_count(piece);
     if (!text.empty() && used + 1 + width > columns - 2) {
       text += " \\\n     ";
       used = 5;
@@ -124,7 +124,7 @@ std::string example_text(const std::string& example, std::size_t columns) {
   for (const std::string& piece : pieces_of(example)) {
     // A value that does not fit beside its option is placed below it.
     const std::size_t space = piece.starts_with("--") ? piece.find(' ') : std::string::npos;
-    if (space != std::string::npos && 6 + column_count(piece) > columns - 2) {
+    if (space != std::string::npos && 6 + sim::column_count(piece) > columns - 2) {
       add(piece.substr(0, space));
       add(piece.substr(space + 1));
     } else {
@@ -141,7 +141,7 @@ std::string end_text(const std::string& footer, std::size_t columns) {
   Rows codes;
   std::istringstream in(footer);
   const auto flush_codes = [&] {
-    text += codes.empty() ? "" : two_columns(codes, columns);
+    text += codes.empty() ? "" : sim::two_columns(codes, columns);
     codes.clear();
   };
   for (std::string line; std::getline(in, line);) {
@@ -152,7 +152,7 @@ std::string end_text(const std::string& footer, std::size_t columns) {
       continue;
     }
     flush_codes();
-    text += line.starts_with("  ") ? example_text(line.substr(2), columns) : wrapped(line, columns) + "\n";
+    text += line.starts_with("  ") ? example_text(line.substr(2), columns) : sim::wrapped(line, columns) + "\n";
   }
   flush_codes();
   return text;
@@ -171,7 +171,7 @@ void set_help_end(CLI::App& command, const HelpEnd& end) {
 }
 
 std::string help_text(const CLI::App& command, std::size_t columns) {
-  std::string text = usage_of(command, columns) + "\n" + wrapped(command.get_description(), columns) + "\n";
+  std::string text = usage_of(command, columns) + "\n" + sim::wrapped(command.get_description(), columns) + "\n";
   Rows arguments, options, commands;
   for (const CLI::Option* option : command.get_options(nullptr))
     if (option->get_positional())

@@ -8,10 +8,10 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "sim/base/text_layout.hpp"
 #include "tools/command_line/arguments.hpp"
 #include "tools/command_line/checks.hpp"
 #include "tools/command_line/help.hpp"
-#include "tools/command_line/text_layout.hpp"
 
 namespace command_line {
 
@@ -48,7 +48,7 @@ std::optional<int> parse(CLI::App& app, int argc, const char* const* argv) {
   // The callback of a command may remove it from the tree of the app.
   const std::string path = command_path(*arguments.command);
   if (arguments.help) {
-    std::cout << help_text(*arguments.command, static_cast<std::size_t>(text_columns(STDOUT_FILENO)));
+    std::cout << help_text(*arguments.command, static_cast<std::size_t>(sim::text_columns(STDOUT_FILENO)));
     return 0;
   }
   if (!arguments.wrong.empty()) return wrong_usage(path, arguments.wrong);

@@ -4,12 +4,12 @@
 #include <iostream>
 #include <memory>
 
+#include "experiment/world_files/world_by_name.hpp"
 #include "shoal/message_schema.hpp"
+#include "sim/base/text_layout.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/shipped_files.hpp"
 #include "sim/device/device_registry.hpp"
-#include "tools/command_line/text_layout.hpp"
-#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands/commands.hpp"
 
 namespace tools {
@@ -20,7 +20,7 @@ using Rows = std::vector<std::pair<std::string, std::string>>;
 
 /// Prints names and descriptions, in the width of the terminal.
 void print_rows(const Rows& rows) {
-  std::cout << command_line::two_columns(rows, static_cast<std::size_t>(command_line::text_columns(STDOUT_FILENO)));
+  std::cout << sim::two_columns(rows, static_cast<std::size_t>(sim::text_columns(STDOUT_FILENO)));
 }
 
 void print_shipped(ShippedKind kind) {

@@ -13,14 +13,14 @@
 #include <string_view>
 
 #include "bridges/base/bus_error.hpp"
+#include "experiment/run/version.hpp"
+#include "experiment/snapshot/run_identity.hpp"
+#include "sim/base/text_layout.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/shipped_files.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 #include "tools/command_line/parse.hpp"
-#include "tools/command_line/text_layout.hpp"
-#include "tools/experiment/run/version.hpp"
-#include "tools/experiment/snapshot/run_identity.hpp"
 #include "tools/shoal/commands/commands.hpp"
 
 namespace {
@@ -102,11 +102,11 @@ int flush_output(int exit_code) {
 
 int main(int argc, char** argv) {
   // Data is written to stdout, messages to stderr.
-  const bool colour = command_line::may_use_colour(STDERR_FILENO);
+  const bool colour = sim::may_use_colour(STDERR_FILENO);
   spdlog::set_default_logger(
       spdlog::stderr_color_mt("shoal", colour ? spdlog::color_mode::automatic : spdlog::color_mode::never));
   // On a terminal a message replaces the live line of progress.
-  const bool clears = command_line::can_move_cursor(STDERR_FILENO);
+  const bool clears = sim::can_move_cursor(STDERR_FILENO);
   spdlog::set_pattern(clears ? "\r\x1b[K%^%l%$: %v" : "%^%l%$: %v");
   // A closed pipe is reported as a failed write.  A handler is used, because child programs would inherit an ignored
   // signal.

@@ -14,9 +14,9 @@
 
 #include "bridges/lcm/lcm_listener.hpp"
 #include "bridges/lockstep_client/wait_warning.hpp"
+#include "experiment/run/runner.hpp"
 #include "shoal/message_schema.hpp"
-#include "tools/command_line/text_layout.hpp"
-#include "tools/experiment/run/runner.hpp"
+#include "sim/base/text_layout.hpp"
 #include "tools/shoal/commands/commands.hpp"
 
 namespace tools {
@@ -77,7 +77,7 @@ struct Screen {
 std::optional<Screen> find_screen() {
   if (isatty(STDOUT_FILENO) == 0) return std::nullopt;
   Screen screen;
-  screen.columns = static_cast<std::size_t>(command_line::text_columns(STDOUT_FILENO));
+  screen.columns = static_cast<std::size_t>(sim::text_columns(STDOUT_FILENO));
   winsize size{};
   if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_row > 4) screen.lines = size.ws_row;
   return screen;
@@ -88,7 +88,7 @@ std::size_t channel_columns(const std::map<std::string, Seen>& channels, const s
   constexpr std::size_t figures = 27, min_of_message = 12, usual = 32;
   if (!screen) return usual;
   std::size_t longest = 8;
-  for (const auto& [channel, seen] : channels) longest = std::max(longest, command_line::column_count(channel));
+  for (const auto& [channel, seen] : channels) longest = std::max(longest, sim::column_count(channel));
   const std::size_t room = screen->columns - std::min(screen->columns, figures + 2 + min_of_message);
   return std::max<std::size_t>(8, std::min(longest, room));
 }
@@ -96,11 +96,9 @@ std::size_t channel_columns(const std::map<std::string, Seen>& channels, const s
 void print_table(std::map<std::string, Seen>& channels, const shoal::MessageTypes& types, double since_s,
                  const std::optional<Screen>& screen) {
   const std::size_t width = channel_columns(channels, screen);
-  const auto fitted = [&](const std::string& line) {
-    return screen ? command_line::cut_to(line, screen->columns) : line;
-  };
+  const auto fitted = [&](const std::string& line) { return screen ? sim::cut_to(line, screen->columns) : line; };
   // On a terminal that cannot be cleared the tables are printed one below the other.
-  if (screen && command_line::can_move_cursor(STDOUT_FILENO)) std::cout << "\033[H\033[2J";
+  if (screen && sim::can_move_cursor(STDOUT_FILENO)) std::cout << "\033[H\033[2J";
   std::string text =
       fitted(fmt::format("{:<{}} {:>8} {:>8} {:>8}  last message", "channel", width, "messages", "Hz", "bytes")) + '\n';
   std::size_t lines = 1, left_out = 0;
@@ -110,8 +108,8 @@ void print_table(std::map<std::string, Seen>& channels, const shoal::MessageType
     // Space below the last row for the number of omitted rows and the cursor.
     if (screen && lines + 3 > screen->lines && ++left_out > 0) continue;
     const std::string name = one_line(channel);
-    text += fitted(fmt::format("{:<{}} {:>8} {:>8.1f} {:>8}  {}", screen ? command_line::cut_to(name, width) : name,
-                               width, seen.messages, rate_hz, seen.last.size(), decoded(types, seen.last, 6, " "))) +
+    text += fitted(fmt::format("{:<{}} {:>8} {:>8.1f} {:>8}  {}", screen ? sim::cut_to(name, width) : name, width,
+                               seen.messages, rate_hz, seen.last.size(), decoded(types, seen.last, 6, " "))) +
             '\n';
     ++lines;
   }

@@ -119,7 +119,7 @@ export class Cameras {
 
   /**
    * Shows a box as a whole: from the least distance at which all its corners are in view, by the rule of
-   * camera_pose_for() in tools/experiment/images/overview.cpp.  `free`: shares of width and height of the view, about
+   * camera_pose_for() in viewer/images/overview.cpp.  `free`: shares of width and height of the view, about
    * its middle, that no panel covers.
    */
   fit(box, free) {

@@ -4,8 +4,8 @@
 #include <functional>
 #include <string>
 
+#include "experiment/run/runner.hpp"
 #include "sim/world_file/load_world.hpp"
-#include "tools/experiment/run/runner.hpp"
 
 namespace tools {
 

@@ -10,8 +10,8 @@
 #include <sstream>
 #include <thread>
 
+#include "experiment/run/runner.hpp"
 #include "sim/config/message_text.hpp"
-#include "tools/experiment/run/runner.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/control/control_session.hpp"
 

@@ -6,9 +6,9 @@
 
 #include <algorithm>
 
+#include "experiment/process/signals.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_control_request_t.hpp"
-#include "tools/experiment/process/signals.hpp"
 
 namespace tools {
 

@@ -5,6 +5,10 @@
 #include <memory>
 #include <set>
 
+#include "experiment/process/process_check.hpp"
+#include "experiment/process/world_programs.hpp"
+#include "experiment/study/load_study.hpp"
+#include "experiment/world_files/world_by_name.hpp"
 #include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/camera/texture.hpp"
@@ -16,10 +20,6 @@
 #include "sim/world_file/file_kind.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
-#include "tools/experiment/process/process_check.hpp"
-#include "tools/experiment/process/world_programs.hpp"
-#include "tools/experiment/study/load_study.hpp"
-#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands/commands.hpp"
 
 namespace tools {

@@ -4,15 +4,15 @@
 #include <iostream>
 #include <memory>
 
+#include "experiment/drive/drive_profile.hpp"
+#include "experiment/study/study_config.hpp"
 #include "shoal/message_schema.hpp"
+#include "sim/base/text_layout.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/motion/motion.hpp"
 #include "sim/program/find_program.hpp"
 #include "tools/command_line/completion.hpp"
-#include "tools/command_line/text_layout.hpp"
-#include "tools/experiment/drive/drive_profile.hpp"
-#include "tools/experiment/study/study_config.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/reference/json_schema.hpp"
 #include "tools/shoal/reference/param_tables.hpp"
@@ -104,7 +104,7 @@ static void add_describe_command(CLI::App& app, int& exit_code) {
     // Text about a name.
     if (name->empty())
       throw command_line::UsageError("needs a NAME, --page, --schema or --completion; see `shoal list devices`");
-    const auto columns = static_cast<std::size_t>(command_line::text_columns(STDOUT_FILENO));
+    const auto columns = static_cast<std::size_t>(sim::text_columns(STDOUT_FILENO));
     const std::string text =
         *name == "study"    ? describe_keys("Keys of a study file.", params_of<StudyConfig>(), columns)
         : *name == "motion" ? describe_keys("Keys of a motion file.", params_of<sim::JointMotion>(), columns)

@@ -2,13 +2,13 @@
 #include <iostream>
 #include <memory>
 
+#include "experiment/process/signals.hpp"
 #include "sim/image/image.hpp"
-#include "tools/experiment/film/camera_rig.hpp"
-#include "tools/experiment/film/film.hpp"
-#include "tools/experiment/film/film_clips.hpp"
-#include "tools/experiment/process/signals.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/film/image_options.hpp"
+#include "viewer/film/camera_rig.hpp"
+#include "viewer/film/film.hpp"
+#include "viewer/film/film_clips.hpp"
 
 namespace tools {
 

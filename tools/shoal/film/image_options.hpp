@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "tools/experiment/film/overlay.hpp"
+#include "viewer/film/overlay.hpp"
 
 namespace tools {
 

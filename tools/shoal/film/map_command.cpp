@@ -6,13 +6,13 @@
 #include <memory>
 #include <optional>
 
+#include "experiment/score/map/map_files.hpp"
+#include "experiment/score/map/published_map.hpp"
+#include "experiment/score/map/true_map.hpp"
 #include "sim/base/log.hpp"
-#include "tools/experiment/film/film_source.hpp"
-#include "tools/experiment/map/map_files.hpp"
-#include "tools/experiment/map/published_map.hpp"
-#include "tools/experiment/map/true_map.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/options/output_file.hpp"
+#include "viewer/film/film_source.hpp"
 
 namespace tools {
 

@@ -10,15 +10,15 @@
 #include "sim/image/image_file.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
-#include "tools/experiment/film/camera_rig.hpp"
-#include "tools/experiment/film/film_source.hpp"
-#include "tools/experiment/film/overlay.hpp"
-#include "tools/experiment/film/ping_observer.hpp"
-#include "tools/experiment/film/scene_painter.hpp"
-#include "tools/experiment/images/overview.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/film/image_options.hpp"
 #include "tools/shoal/options/output_file.hpp"
+#include "viewer/film/camera_rig.hpp"
+#include "viewer/film/film_source.hpp"
+#include "viewer/film/overlay.hpp"
+#include "viewer/film/ping_observer.hpp"
+#include "viewer/film/scene_painter.hpp"
+#include "viewer/images/overview.hpp"
 
 namespace tools {
 

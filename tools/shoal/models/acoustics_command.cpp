@@ -7,18 +7,18 @@
 #include <optional>
 
 #include "devices/comms/acoustic_modem.hpp"
+#include "experiment/world_files/world_by_name.hpp"
 #include "messages/yaml/message_writer.hpp"
 #include "sim/acoustics/channel.hpp"
 #include "sim/acoustics/transducer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
-#include "tools/experiment/acoustics/acoustic_closed_forms.hpp"
-#include "tools/experiment/acoustics/acoustic_link.hpp"
-#include "tools/experiment/acoustics/ray_picture.hpp"
-#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/options/output_file.hpp"
+#include "verification/acoustics/acoustic_closed_forms.hpp"
+#include "verification/acoustics/acoustic_link.hpp"
+#include "verification/acoustics/ray_picture.hpp"
 
 namespace tools {
 

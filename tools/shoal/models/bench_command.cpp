@@ -6,8 +6,8 @@
 #include <iostream>
 #include <memory>
 
-#include "tools/experiment/bench/bench_figures.hpp"
 #include "tools/shoal/commands/commands.hpp"
+#include "verification/bench/bench_figures.hpp"
 
 namespace tools {
 

@@ -4,10 +4,10 @@
 #include <memory>
 #include <optional>
 
-#include "tools/experiment/fidelity/fidelity.hpp"
-#include "tools/experiment/fidelity/fidelity_mutations.hpp"
-#include "tools/experiment/fidelity/fidelity_report.hpp"
 #include "tools/shoal/commands/commands.hpp"
+#include "verification/fidelity/fidelity.hpp"
+#include "verification/fidelity/fidelity_mutations.hpp"
+#include "verification/fidelity/fidelity_report.hpp"
 
 namespace tools {
 

@@ -5,10 +5,10 @@
 #include <memory>
 #include <optional>
 
+#include "experiment/world_files/world_by_name.hpp"
 #include "messages/yaml/message_writer.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/world_file/load_world.hpp"
-#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands/commands.hpp"
 
 namespace tools {

@@ -6,9 +6,9 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "experiment/world_files/world_by_name.hpp"
 #include "sim/config/message_text.hpp"
 #include "tools/command_line/checks.hpp"
-#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/motion/vehicle_joints.hpp"
 #include "tools/shoal/options/output_file.hpp"
 

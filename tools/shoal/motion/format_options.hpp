@@ -4,7 +4,7 @@
 #include <CLI/App.hpp>
 #include <string>
 
-#include "tools/experiment/motion_formats/motion_format.hpp"
+#include "motion/formats/motion_format.hpp"
 
 namespace tools {
 

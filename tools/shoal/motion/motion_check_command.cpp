@@ -2,8 +2,8 @@
 #include <iostream>
 #include <memory>
 
-#include "tools/experiment/motion/motion_check.hpp"
-#include "tools/experiment/motion/motion_file.hpp"
+#include "motion/analysis/motion_check.hpp"
+#include "motion/analysis/motion_file.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
 #include "tools/shoal/motion/motion_output.hpp"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "experiment/world_files/world_by_name.hpp"
+#include "motion/formats/motion_format.hpp"
 #include "sim/world_file/file_kind.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
-#include "tools/experiment/motion_formats/motion_format.hpp"
-#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
 

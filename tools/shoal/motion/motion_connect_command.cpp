@@ -6,12 +6,12 @@
 #include <numbers>
 
 #include "devices/motion/motion_player.hpp"
+#include "experiment/world_files/world_by_name.hpp"
 #include "messages/yaml/message_writer.hpp"
+#include "motion/analysis/connect.hpp"
+#include "motion/analysis/motion_file.hpp"
 #include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
-#include "tools/experiment/motion/connect.hpp"
-#include "tools/experiment/motion/motion_file.hpp"
-#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
 #include "tools/shoal/motion/motion_output.hpp"
 

@@ -3,10 +3,10 @@
 #include <iostream>
 #include <memory>
 
+#include "experiment/world_files/world_by_name.hpp"
 #include "messages/yaml/message_writer.hpp"
-#include "tools/experiment/motion/divergence.hpp"
-#include "tools/experiment/motion/perturbed_world.hpp"
-#include "tools/experiment/world_files/world_by_name.hpp"
+#include "motion/analysis/divergence.hpp"
+#include "motion/analysis/perturbed_world.hpp"
 #include "tools/shoal/motion/format_options.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
 #include "tools/shoal/options/output_file.hpp"

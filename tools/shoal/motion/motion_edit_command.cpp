@@ -8,11 +8,11 @@
 #include <numbers>
 
 #include "devices/motion/servo_bank.hpp"
+#include "experiment/world_files/world_by_name.hpp"
+#include "motion/analysis/motion_file.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tools/command_line/name_list.hpp"
-#include "tools/experiment/motion/motion_file.hpp"
-#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
 #include "tools/shoal/motion/motion_output.hpp"
 #include "tools/shoal/motion/vehicle_joints.hpp"

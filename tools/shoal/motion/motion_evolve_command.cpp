@@ -4,14 +4,14 @@
 #include <iostream>
 #include <memory>
 
+#include "experiment/files/file_replacement.hpp"
+#include "experiment/world_files/world_by_name.hpp"
 #include "messages/yaml/message_writer.hpp"
+#include "motion/analysis/evolve.hpp"
+#include "motion/analysis/evolve_page.hpp"
+#include "motion/analysis/free_keys.hpp"
+#include "motion/analysis/motion_file.hpp"
 #include "sim/base/log.hpp"
-#include "tools/experiment/files/file_replacement.hpp"
-#include "tools/experiment/motion/evolve.hpp"
-#include "tools/experiment/motion/evolve_page.hpp"
-#include "tools/experiment/motion/free_keys.hpp"
-#include "tools/experiment/motion/motion_file.hpp"
-#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
 #include "tools/shoal/motion/motion_output.hpp"
 #include "tools/shoal/options/output_file.hpp"

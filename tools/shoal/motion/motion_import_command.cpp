@@ -6,10 +6,10 @@
 #include <memory>
 #include <stdexcept>
 
+#include "motion/analysis/motion_file.hpp"
 #include "sim/base/whole_file.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/motion/motion_frames.hpp"
-#include "tools/experiment/motion/motion_file.hpp"
 #include "tools/shoal/motion/format_options.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
 

@@ -5,9 +5,9 @@
 
 #include <filesystem>
 
+#include "experiment/files/file_replacement.hpp"
+#include "motion/analysis/motion_file.hpp"
 #include "sim/config/message_text.hpp"
-#include "tools/experiment/files/file_replacement.hpp"
-#include "tools/experiment/motion/motion_file.hpp"
 #include "tools/shoal/options/output_file.hpp"
 #include "tools/shoal/options/shared_options.hpp"
 

@@ -5,13 +5,13 @@
 #include <limits>
 #include <memory>
 
+#include "experiment/process/browser.hpp"
+#include "experiment/process/signals.hpp"
+#include "experiment/world_files/world_by_name.hpp"
+#include "motion/analysis/motion_stage.hpp"
+#include "motion/analysis/motion_tracking.hpp"
+#include "motion/record/embedded_world.hpp"
 #include "sim/config/message_text.hpp"
-#include "tools/experiment/motion/motion_stage.hpp"
-#include "tools/experiment/motion/motion_tracking.hpp"
-#include "tools/experiment/motion_record/embedded_world.hpp"
-#include "tools/experiment/process/browser.hpp"
-#include "tools/experiment/process/signals.hpp"
-#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
 #include "tools/shoal/motion/play_view.hpp"
 #include "tools/shoal/options/view_options.hpp"

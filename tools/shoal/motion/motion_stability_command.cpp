@@ -6,10 +6,10 @@
 #include <memory>
 #include <numbers>
 
+#include "experiment/score/support.hpp"
+#include "experiment/world_files/world_by_name.hpp"
+#include "motion/analysis/push_test.hpp"
 #include "sim/config/message_text.hpp"
-#include "tools/experiment/motion/push_test.hpp"
-#include "tools/experiment/score/support.hpp"
-#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
 
 namespace tools {

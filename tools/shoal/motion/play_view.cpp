@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "experiment/process/signals.hpp"
 #include "sim/config/message_text.hpp"
-#include "tools/experiment/process/signals.hpp"
 
 namespace tools {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "tools/experiment/motion_record/stage_view.hpp"
-#include "tools/experiment/run/pacer.hpp"
+#include "experiment/run/pacer.hpp"
+#include "motion/record/stage_view.hpp"
 
 namespace tools {
 

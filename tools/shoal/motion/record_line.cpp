@@ -9,8 +9,8 @@
 #include <iostream>
 #include <numbers>
 
-#include "tools/command_line/text_layout.hpp"
-#include "tools/experiment/motion/motion_tracking.hpp"
+#include "motion/analysis/motion_tracking.hpp"
+#include "sim/base/text_layout.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
 
 namespace tools {
@@ -47,8 +47,8 @@ void RecordLine::show(MotionRecorder& recorder, const JointCommands& commands, c
     line += fmt::format("  past the end of {}: {:.1f} s", file_, *recorder.over_end_s());
   if (commands.speed() != 1) line += fmt::format("  speed {:.2f}", commands.speed());
   if (shows_set_ && !commands.set().empty()) line += "  set " + commands.set();
-  line = command_line::cut_to(line + joints_text(recorder, velocities), max_columns);
-  if (support && support->static_margin_m < safe_margin_m && command_line::may_use_colour(STDERR_FILENO))
+  line = sim::cut_to(line + joints_text(recorder, velocities), max_columns);
+  if (support && support->static_margin_m < safe_margin_m && sim::may_use_colour(STDERR_FILENO))
     line.replace(margin_at, margin.size(), "\x1b[31m" + margin + "\x1b[39m");
   std::cerr << "\r\x1b[K" << line << std::flush;
   has_line_ = true;

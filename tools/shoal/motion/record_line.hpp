@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "tools/experiment/motion_record/joint_commands.hpp"
-#include "tools/experiment/motion_record/motion_recorder.hpp"
+#include "motion/record/joint_commands.hpp"
+#include "motion/record/motion_recorder.hpp"
 
 namespace tools {
 

@@ -6,8 +6,8 @@
 #include <iostream>
 #include <thread>
 
-#include "tools/experiment/drive/drive_error.hpp"
-#include "tools/experiment/process/signals.hpp"
+#include "experiment/drive/drive_error.hpp"
+#include "experiment/process/signals.hpp"
 #include "tools/shoal/options/shared_options.hpp"
 
 namespace tools {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "tools/experiment/motion_record/frame_pace.hpp"
-#include "tools/experiment/motion_record/record_input.hpp"
-#include "tools/experiment/motion_record/record_view.hpp"
+#include "motion/record/frame_pace.hpp"
+#include "motion/record/record_input.hpp"
+#include "motion/record/record_view.hpp"
 #include "tools/shoal/motion/record_line.hpp"
 
 namespace tools {

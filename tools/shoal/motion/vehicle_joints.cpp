@@ -5,9 +5,9 @@
 #include <filesystem>
 
 #include "devices/motion/servo_bank.hpp"
+#include "experiment/world_files/world_by_name.hpp"
 #include "sim/config/shipped_files.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
-#include "tools/experiment/world_files/world_by_name.hpp"
 
 namespace tools {
 

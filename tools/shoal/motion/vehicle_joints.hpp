@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "tools/experiment/motion_formats/joint_names.hpp"
+#include "motion/formats/joint_names.hpp"
 
 namespace tools {
 

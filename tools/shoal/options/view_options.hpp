@@ -3,7 +3,7 @@
 
 #include <CLI/App.hpp>
 
-#include "tools/experiment/run/run_page.hpp"
+#include "experiment/run/run_page.hpp"
 
 namespace tools {
 

@@ -8,11 +8,11 @@
 #include <thread>
 #include <utility>
 
-#include "tools/experiment/run/version.hpp"
-#include "tools/experiment/view/run_view.hpp"
-#include "tools/experiment/view/waiting_page.hpp"
-#include "tools/experiment/world_files/watched_files.hpp"
+#include "experiment/run/version.hpp"
+#include "experiment/world_files/watched_files.hpp"
 #include "tools/shoal/commands/commands.hpp"
+#include "viewer/server/run_view.hpp"
+#include "viewer/server/waiting_page.hpp"
 
 namespace tools {
 

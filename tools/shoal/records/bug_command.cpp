@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "bridges/base/bus_error.hpp"
-#include "tools/experiment/bug_report/bug_report.hpp"
+#include "experiment/bug_report/bug_report.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/options/output_file.hpp"
 

@@ -4,13 +4,13 @@
 #include <memory>
 
 #include "bridges/lockstep/lockstep_service.hpp"
+#include "experiment/replay/play.hpp"
+#include "experiment/replay/replay.hpp"
+#include "experiment/results/run_error.hpp"
+#include "experiment/run/runner.hpp"
+#include "experiment/world_files/world_by_name.hpp"
 #include "sim/base/log.hpp"
 #include "tools/command_line/name_list.hpp"
-#include "tools/experiment/replay/play.hpp"
-#include "tools/experiment/replay/replay.hpp"
-#include "tools/experiment/results/run_error.hpp"
-#include "tools/experiment/run/runner.hpp"
-#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/options/output_file.hpp"
 #include "tools/shoal/options/speed_option.hpp"

@@ -4,10 +4,10 @@
 #include <memory>
 #include <stdexcept>
 
+#include "experiment/log_score/log_score.hpp"
+#include "experiment/run/runner.hpp"
 #include "sim/base/log.hpp"
 #include "sim/config/diagnostics.hpp"
-#include "tools/experiment/log_score/log_score.hpp"
-#include "tools/experiment/run/runner.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/options/output_file.hpp"
 

@@ -2,15 +2,15 @@
 #include <iostream>
 #include <memory>
 
+#include "experiment/run/version.hpp"
+#include "experiment/snapshot/run_identity.hpp"
+#include "experiment/snapshot/snapshot_file.hpp"
 #include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world/world_state.hpp"
 #include "sim/world_file/load_world.hpp"
-#include "tools/experiment/run/version.hpp"
-#include "tools/experiment/snapshot/run_identity.hpp"
-#include "tools/experiment/snapshot/snapshot_file.hpp"
 #include "tools/shoal/commands/commands.hpp"
 
 namespace tools {

@@ -7,12 +7,12 @@
 #include <stdexcept>
 
 #include "shoal/message_schema.hpp"
+#include "sim/base/text_layout.hpp"
 #include "sim/config/param_table.hpp"
 #include "sim/program/program_declaration.hpp"
 #include "sim/random/noise.hpp"
 #include "sim/world_file/metric_registry.hpp"
 #include "sim/world_file/world_config.hpp"
-#include "tools/command_line/text_layout.hpp"
 #include "tools/shoal/reference/param_tables.hpp"
 #include "tools/shoal/reference/program_schema.hpp"
 
@@ -38,14 +38,14 @@ std::string message_text(const shoal::MessageSchema& schema, std::size_t columns
   std::string text = fmt::format("{}  fingerprint {:016x}\n", schema.name, schema.fingerprint);
   std::string comment = schema.comment;  // it has its own lines
   if (columns < 1000) std::replace(comment.begin(), comment.end(), '\n', ' ');
-  if (!comment.empty()) text += (columns < 1000 ? command_line::wrapped(comment, columns) : comment) + "\n";
+  if (!comment.empty()) text += (columns < 1000 ? sim::wrapped(comment, columns) : comment) + "\n";
   for (const shoal::Member& member : schema.members) {
     std::string name = member.name;
     for (const shoal::Dimension& dimension : member.dimensions) name += "[" + dimension.text + "]";
     const std::string begin = fmt::format("  {:<8} {:<32} ", member.type_name, name);
     const bool beside = begin.size() + 20 <= columns;
     const std::size_t indent = beside ? begin.size() : 6;
-    const std::string meaning = command_line::wrapped(member.comment, columns, indent, indent);
+    const std::string meaning = sim::wrapped(member.comment, columns, indent, indent);
     if (meaning.empty() && columns < 1000)  // the page has its blanks
       text += begin.substr(0, begin.find_last_not_of(' ') + 1) + "\n";
     else if (beside)
@@ -63,7 +63,7 @@ std::string keys_text(const std::vector<sim::ParamInfo>& params, std::size_t col
   std::size_t longest = 0;
   for (std::size_t at = 0; at < table.size();) {
     const std::size_t end = std::min(table.find('\n', at), table.size());
-    longest = std::max(longest, command_line::column_count(std::string_view(table).substr(at, end - at)));
+    longest = std::max(longest, sim::column_count(std::string_view(table).substr(at, end - at)));
     at = end + 1;
   }
   if (longest <= columns) return table;
@@ -75,7 +75,7 @@ std::string keys_text(const std::vector<sim::ParamInfo>& params, std::size_t col
       facts += initial == "required" || initial == "unset" ? ", " + initial : ", default " + initial;
     rows.emplace_back(key, meaning.empty() ? facts : meaning + " (" + facts + ")");
   }
-  return command_line::two_columns(rows, columns, 28);
+  return sim::two_columns(rows, columns, 28);
 }
 
 const char* const generated = "<!-- Generated: `shoal describe --page {}`. Do not edit. -->\n\n";
@@ -191,11 +191,11 @@ std::string programs_page() {
 std::string program_text(const std::string& name, std::size_t columns) {
   for (const sim::ProgramDeclaration& program : shipped_declarations()) {
     if (program.program != name) continue;
-    return command_line::wrapped(program.program + ": " + program.meaning, columns) + "\n" +
-           command_line::wrapped(
-               channels_text("Receives", program.subscribes) + channels_text("Publishes", program.publishes) +
-                   groups_text("Exactly one", program.exactly_one) + groups_text("At most one", program.at_most_one),
-               columns) +
+    return sim::wrapped(program.program + ": " + program.meaning, columns) + "\n" +
+           sim::wrapped(channels_text("Receives", program.subscribes) + channels_text("Publishes", program.publishes) +
+                            groups_text("Exactly one", program.exactly_one) +
+                            groups_text("At most one", program.at_most_one),
+                        columns) +
            "\n\n" + keys_text(param_table_of(program), columns);
   }
   return {};
@@ -237,10 +237,10 @@ std::string metrics_text(std::size_t columns) {
   constexpr std::size_t indent = 6;
   std::string text = "Figures of the metrics of a world, NAME.figure.\n";
   for (const sim::MetricKind* kind : sim::MetricRegistry::instance().all()) {
-    text += "\n" + command_line::wrapped(kind->word + ": " + kind->meaning, columns) + "\n";
+    text += "\n" + sim::wrapped(kind->word + ": " + kind->meaning, columns) + "\n";
     for (const sim::FigureKind& figure : kind->figures)
       text += fmt::format("  {} ({})\n{:{}}{}\n", figure.name, unit_text(figure), "", indent,
-                          command_line::wrapped(figure.meaning, columns, indent, indent));
+                          sim::wrapped(figure.meaning, columns, indent, indent));
   }
   return text;
 }
@@ -257,7 +257,7 @@ std::string reference_page(const std::string& name) {
 }
 
 std::string describe_keys(const std::string& title, const std::vector<sim::ParamInfo>& params, std::size_t columns) {
-  return command_line::wrapped(title, columns) + "\n\n" + keys_text(params, columns);
+  return sim::wrapped(title, columns) + "\n\n" + keys_text(params, columns);
 }
 
 namespace {
@@ -288,7 +288,7 @@ std::string describe_text(const std::string& name, std::size_t columns) {
   if (const sim::DeviceType* type = sim::DeviceRegistry::instance().find(name)) {
     std::string traffic = traffic_of(*type);
     traffic.pop_back();  // the newline
-    return command_line::wrapped(type->name + ": " + type->meaning, columns) + "\n" + keys(traffic, params_of(*type)) +
+    return sim::wrapped(type->name + ": " + type->meaning, columns) + "\n" + keys(traffic, params_of(*type)) +
            "\nBeside these, the keys of every device: shoal describe device\n";
   }
   const shoal::MessageTypes& types = shoal::embedded_types();

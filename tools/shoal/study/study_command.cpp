@@ -5,15 +5,15 @@
 #include <memory>
 #include <stdexcept>
 
+#include "experiment/campaign/manifest.hpp"
+#include "experiment/campaign/verified_runs.hpp"
+#include "experiment/process/signals.hpp"
+#include "experiment/study/study_results.hpp"
+#include "experiment/study/study_seeds.hpp"
+#include "experiment/world_files/world_by_name.hpp"
 #include "sim/base/log.hpp"
 #include "tools/command_line/checks.hpp"
 #include "tools/command_line/name_list.hpp"
-#include "tools/experiment/campaign/manifest.hpp"
-#include "tools/experiment/campaign/verified_runs.hpp"
-#include "tools/experiment/process/signals.hpp"
-#include "tools/experiment/study/study_results.hpp"
-#include "tools/experiment/study/study_seeds.hpp"
-#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/study/study_parts.hpp"
 

@@ -7,14 +7,14 @@
 #include <iostream>
 #include <thread>
 
+#include "experiment/campaign/outside_program.hpp"
+#include "experiment/campaign/study_database.hpp"
+#include "experiment/files/file_replacement.hpp"
+#include "experiment/process/signals.hpp"
+#include "experiment/report/report_page.hpp"
+#include "experiment/study/study_algorithms.hpp"
+#include "experiment/study/study_results.hpp"
 #include "tools/command_line/name_list.hpp"
-#include "tools/experiment/campaign/outside_program.hpp"
-#include "tools/experiment/campaign/study_database.hpp"
-#include "tools/experiment/files/file_replacement.hpp"
-#include "tools/experiment/process/signals.hpp"
-#include "tools/experiment/report/report_page.hpp"
-#include "tools/experiment/study/study_algorithms.hpp"
-#include "tools/experiment/study/study_results.hpp"
 #include "tools/shoal/options/shared_options.hpp"
 
 namespace tools {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/experiment/study/study_runs.hpp"
+#include "experiment/study/study_runs.hpp"
 
 namespace tools {
 

@@ -4,13 +4,13 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "experiment/campaign/engines.hpp"
+#include "experiment/campaign/manifest.hpp"
+#include "experiment/campaign/shown_runs.hpp"
+#include "experiment/process/signals.hpp"
+#include "experiment/study/study_results.hpp"
 #include "sim/base/log.hpp"
 #include "tools/command_line/checks.hpp"
-#include "tools/experiment/campaign/engines.hpp"
-#include "tools/experiment/campaign/manifest.hpp"
-#include "tools/experiment/campaign/shown_runs.hpp"
-#include "tools/experiment/process/signals.hpp"
-#include "tools/experiment/study/study_results.hpp"
 #include "tools/shoal/options/shared_options.hpp"
 #include "tools/shoal/study/study_parts.hpp"
 

@@ -4,16 +4,16 @@
 #include <memory>
 #include <stdexcept>
 
+#include "experiment/campaign/tune.hpp"
+#include "experiment/files/file_replacement.hpp"
+#include "experiment/files/no_links.hpp"
+#include "experiment/process/signals.hpp"
+#include "experiment/study/study_rules.hpp"
+#include "experiment/study/study_seeds.hpp"
+#include "experiment/study/study_tables.hpp"
+#include "experiment/world_files/world_by_name.hpp"
 #include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
-#include "tools/experiment/campaign/tune.hpp"
-#include "tools/experiment/files/file_replacement.hpp"
-#include "tools/experiment/files/no_links.hpp"
-#include "tools/experiment/process/signals.hpp"
-#include "tools/experiment/study/study_rules.hpp"
-#include "tools/experiment/study/study_seeds.hpp"
-#include "tools/experiment/study/study_tables.hpp"
-#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/study/study_parts.hpp"
 

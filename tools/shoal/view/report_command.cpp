@@ -11,14 +11,14 @@
 #include <memory>
 #include <stdexcept>
 
+#include "experiment/files/no_links.hpp"
+#include "experiment/report/report_page.hpp"
+#include "experiment/results/run_record.hpp"
+#include "experiment/run/version.hpp"
 #include "sim/base/log.hpp"
-#include "tools/experiment/files/no_links.hpp"
-#include "tools/experiment/recording/recording_page.hpp"
-#include "tools/experiment/report/report_page.hpp"
-#include "tools/experiment/results/run_record.hpp"
-#include "tools/experiment/run/version.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/options/output_file.hpp"
+#include "viewer/recording/recording_page.hpp"
 
 namespace tools {
 

@@ -11,19 +11,19 @@
 #include <thread>
 
 #include "bridges/lcm/lcm_listener.hpp"
+#include "experiment/process/browser.hpp"
+#include "experiment/process/signals.hpp"
+#include "experiment/run/version.hpp"
+#include "experiment/world_files/world_by_name.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_control_request_t.hpp"
 #include "sim/base/log.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/message_text.hpp"
-#include "tools/experiment/process/browser.hpp"
-#include "tools/experiment/process/signals.hpp"
-#include "tools/experiment/resimulate/resimulated_run.hpp"
-#include "tools/experiment/run/version.hpp"
-#include "tools/experiment/view/log_view.hpp"
-#include "tools/experiment/world_files/world_by_name.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/options/view_options.hpp"
+#include "viewer/resimulate/resimulated_run.hpp"
+#include "viewer/server/log_view.hpp"
 
 namespace tools {
 

@@ -10,12 +10,12 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "experiment/drive/drive_profile.hpp"
+#include "experiment/study/study_config.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/motion/motion.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/project_paths.hpp"
-#include "tools/experiment/drive/drive_profile.hpp"
-#include "tools/experiment/study/study_config.hpp"
 #include "tools/shoal/reference/param_tables.hpp"
 
 namespace {

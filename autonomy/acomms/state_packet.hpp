@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "autonomy/acomms/acoustic_frame.hpp"
+#include "autonomy/behaviours/helm_behaviour.hpp"
+#include "shoal/acoustic_received_t.hpp"
+#include "shoal/modem_received_t.hpp"
+#include "shoal/modem_send_t.hpp"
+
+namespace autonomy {
+
+/// Returns the message for an acoustic modem that broadcasts the state.  Nothing when it cannot be encoded in a frame.
+std::optional<shoal::modem_send_t> to_everybody(const AcousticState& state);
+std::optional<shoal::modem_send_t> to_everybody(const AcousticOrder& order);
+
+/// Returns the state in a packet.  Nothing when it is not a valid frame, or when its time differs by more than a minute
+/// from the time of sending, which makes it useless.
+std::optional<AcousticState> state_in(const shoal::acoustic_received_t& packet);
+std::optional<AcousticState> state_in(const shoal::modem_received_t& packet);
+
+/// Returns an order, as state_in() does a state.
+std::optional<AcousticOrder> order_in(const shoal::acoustic_received_t& packet);
+
+/// Distinguishes states received directly from their sender from those forwarded by a gateway, whose travel time is
+/// unrelated to the sender.  Direct means sent within `newest_s` of the time of the state, by the vehicle first
+/// received with this sender's number.  A relayed state is older: its packet was received completely before it was
+/// forwarded, which takes seconds under water.
+class DirectStates {
+ public:
+  static constexpr double newest_s = 3;
+  bool is_direct(const shoal::acoustic_received_t& packet, const AcousticState& state);
+
+ private:
+  std::map<int, std::string> vehicles_;  ///< by number
+};
+
+/// Returns the position of the sender at a time of its clock, extrapolated with its speed.
+Vector2d position_at(const AcousticState& state, std::int64_t utime);
+
+Motion motion_of(const AcousticState& state);
+
+}  // namespace autonomy

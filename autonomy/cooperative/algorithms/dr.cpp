@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "autonomy/cooperative/estimator/estimator_registry.hpp"
+#include "autonomy/cooperative/filter/own_filter.hpp"
+
+namespace navigation {
+
+namespace {
+
+/// Dead reckoning: motion and satellite fixes only.
+class DeadReckoning final : public OwnFilterEstimator<DeadReckoning> {
+ public:
+  static constexpr const char* meaning = "dead reckoning: own motion and satellite fixes only";
+  void heard(const Heard&) override {}
+  void saw(const Relative&) override {}
+  Bytes say(Time, std::size_t) override { return {}; }
+};
+
+SHOAL_ESTIMATOR("dr", DeadReckoning);
+
+}  // namespace
+
+}  // namespace navigation

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "autonomy/cooperative/estimator/estimator_registry.hpp"
+#include "autonomy/cooperative/filter/own_filter.hpp"
+
+namespace navigation {
+
+namespace {
+
+/// The filter of `naive` without the state of the clock: it takes all clocks as right, so that their errors become
+/// errors of the position.
+class NaiveClockless final : public OwnFilterEstimator<NaiveClockless> {
+ public:
+  static constexpr const char* meaning = "the same as naive, but it takes all clocks as right";
+
+  void start(const Setup& setup) override {
+    need_bytes(setup, "naive_clockless", position_bytes);
+    Setup without_clocks = setup;
+    for (Member& member : without_clocks.team)
+      member.errors.clock_s = member.errors.clock_drift = member.errors.clock_walk_srts = 0;
+    OwnFilterEstimator::start(without_clocks);
+  }
+  void heard(const Heard& heard) override {
+    if (const auto sender = position_in(heard.payload))
+      filter_.range(own, *sender, heard.own_z_m - heard.sender_z_m, heard.range_m, heard.std_m);
+  }
+  Bytes say(Time time, std::size_t) override { return payload_of(own_position(time)); }
+};
+
+SHOAL_ESTIMATOR("naive_clockless", NaiveClockless);
+
+}  // namespace
+
+}  // namespace navigation

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "autonomy/cooperative/estimator/estimator_registry.hpp"
+#include "autonomy/cooperative/filter/own_filter.hpp"
+
+namespace navigation {
+
+namespace {
+
+/// As `naive`, but a vehicle says only what it knows by itself, from a second filter without ranges.  No information
+/// returns through others, but the error of a sender is the same in each of its ranges.
+class NaiveOfDeadReckoning final : public OwnFilterEstimator<NaiveOfDeadReckoning> {
+ public:
+  static constexpr const char* meaning = "as naive, but each vehicle says only its dead reckoning";
+
+  void start(const Setup& setup) override {
+    need_bytes(setup, "naive_dr", position_bytes);
+    OwnFilterEstimator::start(setup);
+    alone_ = filter_;
+  }
+  void moved(Time time, const Vector2& v_W, const Matrix2& q) override {
+    OwnFilterEstimator::moved(time, v_W, q);
+    alone_.move(own, time, v_W, q);
+  }
+  void fix(Time time, const Vector2& p_W, double std_m) override {
+    OwnFilterEstimator::fix(time, p_W, std_m);
+    alone_.fix(own, p_W, std_m);
+  }
+  void heard(const Heard& heard) override { hear_independent(heard); }
+  void saw(const Relative& seen) override { see_independent(seen); }
+  Bytes say(Time time, std::size_t) override {
+    const Estimate estimate = alone_.now(own, time);
+    return payload_of({estimate.p_W, estimate.P});
+  }
+
+ private:
+  JointFilter alone_;
+};
+
+SHOAL_ESTIMATOR("naive_dr", NaiveOfDeadReckoning);
+
+}  // namespace
+
+}  // namespace navigation

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "autonomy/cooperative/driver/nav_pilot.hpp"
+
+#include <stdexcept>
+
+namespace navigation {
+
+namespace {
+
+int index_in(const NavTeam& team, const std::string& name) {
+  if (const auto index = team.index_of(name)) return *index;
+  throw std::invalid_argument("vehicle '" + name + "' is not in the world, or has no acoustic modem");
+}
+
+}  // namespace
+
+NavPilot::NavPilot(std::shared_ptr<const NavTeam> team, const Params& params,
+                   std::unique_ptr<autonomy::HelmBehaviour> behaviour)
+    : params_(params),
+      navigation_(team, index_in(*team, params.name), *params.algorithm, params.navigation),
+      behaviour_(std::move(behaviour)),
+      access_(params.access, params.name) {}
+
+void NavPilot::receive(const shoal::acoustic_received_t& packet) {
+  ++counts_.frames;
+  navigation_.heard(packet, packet.data);
+}
+
+NavPilot::Decision NavPilot::step() {
+  Decision decision;
+  const Time now = navigation_.reports().time();
+  const std::optional<Estimate> estimate = navigation_.estimate();
+  if (!estimate) {
+    if (now != 0) decision.helm = at_rest();
+    return decision;
+  }
+  decision.helm = helm(*estimate);
+  if (now == estimated_at_) return decision;  // no new data
+  estimated_at_ = now;
+  decision.estimate = navigation_.message(*estimate);
+  if (!access_.take_turn(decision.estimate->utime)) return decision;
+  decision.send.emplace();
+  decision.send->utime = decision.estimate->utime;
+  decision.send->data = *navigation_.say();
+  decision.send->size = static_cast<std::int32_t>(decision.send->data.size());
+  ++counts_.sent;
+  return decision;
+}
+
+shoal::helm_command_t NavPilot::at_rest() const {
+  // A surface craft takes no depth.
+  const double depth_m = params_.depth_m > 0 ? 0 : autonomy::unknown;
+  return {navigation_.reports().time(), 0, autonomy::unknown, depth_m, autonomy::unknown};
+}
+
+shoal::helm_command_t NavPilot::helm(const Estimate& estimate) {
+  const Time now = navigation_.reports().time();
+  shoal::helm_command_t helm = at_rest();
+  const bool known_start = params_.navigation.start.p_W.has_value();
+  const bool waits = !known_start && seconds(now - navigation_.reports().setup()->time) < params_.surface_s;
+  if (waits || behaviour_->finished()) return helm;
+  const autonomy::Course course = behaviour_->steer({now, estimate.p_W, estimate.v_W});
+  helm.speed_mps = course.speed_mps;
+  helm.heading_rad = course.heading_rad;
+  if (params_.depth_m > 0) helm.depth_m = params_.depth_m;
+  return helm;
+}
+
+}  // namespace navigation

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "autonomy/acomms/acoustic_frame.hpp"
+#include "autonomy/acomms/channel_access.hpp"
+#include "autonomy/acomms/state_packet.hpp"
+#include "autonomy/behaviours/cloned.hpp"
+#include "autonomy/behaviours/helm_behaviour.hpp"
+#include "autonomy/filters/marine_ekf.hpp"
+#include "shoal/acoustic_received_t.hpp"
+#include "shoal/compass_t.hpp"
+#include "shoal/dvl_t.hpp"
+#include "shoal/estimate_t.hpp"
+#include "shoal/gps_data_t.hpp"
+#include "shoal/helm_command_t.hpp"
+#include "shoal/ins_t.hpp"
+#include "shoal/modem_send_t.hpp"
+#include "shoal/multibeam_t.hpp"
+#include "shoal/pressure_t.hpp"
+
+namespace autonomy {
+
+/// AUV that localises itself by DVL, heading and depth, and by one-way ranges to vehicles that report their positions
+/// by acoustic modem.  In addition it keeps an estimate by dead reckoning only.  It waits at the surface for GPS,
+/// dives, follows its behaviour, and surfaces.  A pure function of its reports in their order; its time is that of
+/// their stamps, by the vehicle's own clock.
+class CoopAuv {
+ public:
+  struct Params {
+    std::string name;
+    int id = 100;  ///< in its frames
+    double depth_m = 10;
+    MarineEkf::Params filter;
+    bool use_ranges = true;
+    bool steer_by_dead_reckoning = false;
+    double sound_speed_mps = 1500;   ///< converts travel times to ranges
+    double range_std_m = 1.0;        ///< of one range
+    double sound_speed_std = 0.001;  ///< of the range
+    double yaw_offset_rad = 0;       ///< added to the measured heading
+    /// Offsets from the estimated point, in the vehicle's axes.
+    Eigen::Vector3d modem_B = Eigen::Vector3d::Zero(), gps_B = Eigen::Vector3d::Zero();
+    double surface_s = 10;            ///< at the surface after the first fix
+    double fix_period_s = 5;          ///< GPS errors are correlated in time, so that more fixes add little
+    std::optional<Vector2d> start_W;  ///< known start: it does not wait for GPS
+    double start_std_m = 1;
+    ChannelAccess::Params access;    ///< for its own state
+    double period_s = 0.5;           ///< between two calls of step()
+    bool execute = false;            ///< executes orders for its id: it moves to the position and circles there
+    double order_depth_max_m = 100;  ///< limit of the depth of an order
+    double order_speed_max_mps = 2.5;
+    double hold_radius_m = 30;
+  };
+  struct Decision {
+    std::optional<shoal::helm_command_t> helm;        ///< for NAME.autopilot.cmd
+    std::optional<shoal::estimate_t> estimate;        ///< for NAME.estimate
+    std::optional<shoal::estimate_t> dead_reckoning;  ///< for NAME.dead_reckoning
+    std::optional<shoal::modem_send_t> send;          ///< for NAME.modem.cmd
+  };
+  struct Counts {
+    int frames = 0;
+    int bad_frames = 0;
+    int ranges = 0;   ///< used
+    int refused = 0;  ///< by the filter, or too late, or with an impossible travel time
+    int sent = 0;
+    int clock_steps = 0;
+    int silences = 0;        ///< of all devices
+    int relayed = 0;         ///< states that were not sent by their own vehicle: no ranges
+    int orders = 0;          ///< executed
+    int orders_refused = 0;  ///< each counted once
+  };
+  enum class Phase { waiting_for_fix, at_surface, under_way, done };
+
+  /// Throws std::invalid_argument for a number of states that the filter does not support.
+  CoopAuv(const Params& params, std::unique_ptr<HelmBehaviour> behaviour);
+
+  void receive(const shoal::dvl_t& dvl);
+  void receive(const shoal::ins_t& attitude);
+  void receive(const shoal::compass_t& compass);
+  void receive(const shoal::pressure_t& pressure);
+  void receive(const shoal::gps_data_t& fix);
+  void receive(const shoal::acoustic_received_t& packet);
+  /// Processes a ping of the forward sonar, a multibeam sonar whose swath is horizontal and centred on the bow.
+  void receive(const shoal::multibeam_t& ping);
+  /// Computes the commands after all reports up to now.
+  Decision step();
+
+  /// Null before the position is known.
+  const MarineEkf* cooperative() const { return cooperative_ ? &*cooperative_ : nullptr; }
+  const MarineEkf* dead_reckoning() const { return dead_reckoning_ ? &*dead_reckoning_ : nullptr; }
+  Phase phase() const { return phase_; }
+  const Counts& counts() const { return counts_; }
+
+ private:
+  void note_time(std::int64_t utime);
+  void set_clock(std::int64_t by_us);
+  void coast_over_silence(std::int64_t utime);
+  void start(std::int64_t utime, const Vector2d& p_W, double std_m);
+  void predict(std::int64_t utime);
+  bool is_silent() const;
+  Motion motion_at(const MarineEkf& filter, std::int64_t utime) const;
+  const MarineEkf& steered_by() const { return params_.steer_by_dead_reckoning ? *dead_reckoning_ : *cooperative_; }
+  /// Returns a point of the vehicle relative to the estimated one
+  Eigen::Vector3d turned_into_world(const Eigen::Vector3d& point_B) const;
+  void execute(const AcousticOrder& order);
+  OrderRefusal refusal_of(const AcousticOrder& order) const;
+  void use_range(const shoal::acoustic_received_t& packet, const AcousticState& beacon);
+  void update_phase();
+  shoal::helm_command_t helm();
+  shoal::estimate_t estimate(const MarineEkf& filter) const;
+  std::optional<shoal::modem_send_t> state_frame();
+
+  Params params_;
+  Cloned<HelmBehaviour> behaviour_;
+  ChannelAccess access_;
+  DirectStates direct_;
+  int order_ = 0;          ///< number of the last one executed
+  int refused_order_ = 0;  ///< number of the last one refused, when later than that
+  OrderRefusal refusal_ = OrderRefusal::none;
+  double desired_depth_m_ = 0;  ///< when under way
+  std::optional<MarineEkf> cooperative_;
+  std::optional<MarineEkf> dead_reckoning_;
+
+  std::int64_t utime_ = 0;  ///< newest stamp
+  int steps_in_silence_ = 0;
+  std::optional<Eigen::Quaterniond> q_WB_;
+  std::optional<std::int64_t> attitude_utime_;  ///< of an AHRS, which counts more than a compass
+  std::optional<std::int64_t> heading_utime_;   ///< of the device that reported it last
+  Eigen::Vector3d v_B_ = Eigen::Vector3d::Zero();
+  double velocity_noise_mpsprtHz_ = 0;  ///< noise in addition to that of a DVL with bottom track
+  std::optional<std::int64_t> velocity_utime_;
+  double depth_m_ = 0;
+  std::optional<std::int64_t> fix_utime_;
+  std::optional<std::int64_t> first_fix_utime_;
+  Phase phase_ = Phase::waiting_for_fix;
+  Counts counts_;
+};
+
+}  // namespace autonomy

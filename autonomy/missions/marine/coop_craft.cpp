@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "autonomy/missions/marine/coop_craft.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "sim/base/math.hpp"
+
+namespace autonomy {
+
+namespace {
+
+/// Maximum age of a heading.
+constexpr double oldest_yaw_s = 2;
+
+}  // namespace
+
+CoopCraft::CoopCraft(const Params& params, std::unique_ptr<HelmBehaviour> behaviour)
+    : params_(params), behaviour_(std::move(behaviour)), access_(params.access, params.name) {}
+
+void CoopCraft::receive(const shoal::gps_data_t& fix) {
+  utime_ = fix.utime;  // the time stamp is used with or without a fix: a clock may be set back
+  const Vector2d p_W(fix.xyz_pos[0], fix.xyz_pos[1]);
+  if (fix.gps_lock < 1 || !p_W.allFinite() || !(fix.horizontal_accuracy > 0)) return;
+  Motion motion{fix.utime, p_W, Vector2d::Zero()};
+  // GPS gives the course clockwise from north.
+  if (std::isfinite(fix.speed) && std::isfinite(fix.heading))
+    motion.v_W = turned({fix.speed, 0}, 0.5 * std::numbers::pi - fix.heading);
+  motion_ = motion;
+  steps_since_fix_ = 0;
+  position_std_m_ = fix.horizontal_accuracy;
+}
+
+void CoopCraft::receive(const shoal::acoustic_received_t& packet) {
+  const auto state = state_in(packet);
+  if (!state) {
+    ++(order_in(packet) ? counts_.orders : counts_.bad_frames);
+    return;
+  }
+  ++counts_.received;
+  if (direct_.is_direct(packet, *state))
+    behaviour_->receive_state(packet.source, motion_of(*state));
+  else
+    ++counts_.relayed;
+}
+
+void CoopCraft::receive(const shoal::ins_t& attitude) {
+  const Eigen::Quaterniond q(attitude.quat[0], attitude.quat[1], attitude.quat[2], attitude.quat[3]);
+  if (!(std::abs(q.norm() - 1) < 0.01)) return;
+  yaw_rad_ = sim::yaw_of(q.normalized().toRotationMatrix());
+  yaw_utime_ = attitude.utime;
+}
+
+Motion CoopCraft::motion_at(std::int64_t utime) const {
+  Motion motion = *motion_;
+  motion.p_W += motion.v_W * seconds(utime - motion.utime);
+  motion.utime = utime;
+  if (std::abs(seconds(utime - yaw_utime_)) <= oldest_yaw_s) motion.yaw_rad = yaw_rad_;
+  return motion;
+}
+
+void CoopCraft::receive(const shoal::planar_lidar_t& scan) {
+  if (!motion_ || std::abs(seconds(scan.utime - motion_->utime)) > params_.oldest_fix_s) return;
+  behaviour_->receive_scan({scan.ranges, scan.rad0, scan.radstep}, motion_at(scan.utime));
+}
+
+CoopCraft::Decision CoopCraft::step() {
+  Decision decision;
+  shoal::helm_command_t helm{utime_, 0, unknown, unknown, unknown};
+  // The time is that of GPS: without its messages only the calls of this function are counted.
+  const bool is_recent = steps_since_fix_++ * params_.period_s <= params_.oldest_fix_s;
+  const bool has_fix = is_recent && motion_ && std::abs(seconds(utime_ - motion_->utime)) <= params_.oldest_fix_s;
+  if (!motion_) return decision;
+  decision.remark = remark();
+  if (has_fix) {
+    const Course course = behaviour_->steer(motion_at(motion_->utime));
+    helm.speed_mps = course.speed_mps;
+    helm.heading_rad = course.heading_rad;
+    decision.estimate = estimate();
+    if (access_.take_turn(utime_)) decision.send = state_frame();
+  }
+  decision.helm = helm;  // without a fix it stops
+  return decision;
+}
+
+/// Reports once that it has been waiting for a long time.
+std::string CoopCraft::remark() {
+  if (!patient_since_ || utime_ < *patient_since_) patient_since_ = utime_;
+  const double waited_s = seconds(utime_ - *patient_since_);
+  const std::string text = behaviour_->remark();
+  if (remarked_ || text.empty() || waited_s < params_.timeout_s) return {};
+  remarked_ = true;
+  return "after " + std::to_string(std::llround(waited_s)) + " s: " + text;
+}
+
+shoal::estimate_t CoopCraft::estimate() const {
+  shoal::estimate_t estimate{};
+  estimate.utime = motion_->utime;
+  for (int i = 0; i < 2; ++i) {
+    estimate.position_m[i] = motion_->p_W[i];
+    estimate.velocity_mps[i] = motion_->v_W[i];
+    estimate.covariance_m2[4 * i] = position_std_m_ * position_std_m_;
+  }
+  estimate.covariance_m2[8] = 1;  // it floats; waves and tide are unknown
+  estimate.yaw_rad = std::atan2(motion_->v_W.y(), motion_->v_W.x());
+  estimate.clock_error_s = 0;  // GPS sets the clock
+  return estimate;
+}
+
+std::optional<shoal::modem_send_t> CoopCraft::state_frame() {
+  AcousticState state;
+  state.sender = params_.id;
+  state.utime = motion_->utime;
+  state.east_m = motion_->p_W.x();
+  state.north_m = motion_->p_W.y();
+  state.depth_m = params_.transducer_depth_m;
+  state.east_std_m = state.north_std_m = position_std_m_;
+  state.speed_mps = motion_->v_W.norm();
+  state.course_rad = std::atan2(motion_->v_W.y(), motion_->v_W.x());
+  auto message = to_everybody(state);
+  if (message) ++counts_.sent;
+  return message;
+}
+
+}  // namespace autonomy

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiment/campaign/outside_program.hpp"
+
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+#include "experiment/files/scratch_directory.hpp"
+#include "experiment/process/child_program.hpp"
+#include "experiment/process/signals.hpp"
+#include "experiment/results/run_record.hpp"
+
+namespace tools {
+
+namespace {
+
+constexpr std::chrono::milliseconds poll_interval{5};
+constexpr std::chrono::milliseconds signal_interval{300};
+
+int exit_code_of(int status) {
+  return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
+/// Starts a program from PATH.  Throws std::runtime_error.
+pid_t start_outside(const std::vector<std::string>& arguments, const std::string& log) {
+  pid_t pid = 0;
+  if (const int error = start_child({arguments.front(), arguments, own_environment(), log}, pid); error != 0)
+    throw std::runtime_error("cannot start '" + arguments.front() + "': " + std::strerror(error));
+  return pid;
+}
+
+}  // namespace
+
+void require_program(const std::string& name, const std::string& package) {
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (access((folder.empty() ? name : folder + "/" + name).c_str(), X_OK) == 0) return;
+  throw std::runtime_error("there is no program '" + name + "' in PATH; Debian has it in the package " + package);
+}
+
+ProgramOutput output_of(const std::vector<std::string>& arguments) {
+  const ScratchDirectory folder;
+  const std::string log = (folder.path / "output").string();
+  const pid_t pid = start_outside(arguments, log);
+  int status = 0;
+  while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+  }
+  return {exit_code_of(status), read_whole_file(log)};
+}
+
+int run_outside_program(const std::vector<std::string>& arguments) {
+  const pid_t pid = start_outside(arguments, "");
+  int status = 0, passed_on = 0;
+  auto next = std::chrono::steady_clock::now();
+  while (waitpid(pid, &status, WNOHANG) != pid) {
+    // GNU parallel waits for its jobs after the first one, and ends them after the second.
+    if (caught_signals() > 0 && passed_on < 2 && std::chrono::steady_clock::now() >= next) {
+      ++passed_on;
+      kill(-pid, SIGTERM);
+      next = std::chrono::steady_clock::now() + signal_interval;
+    }
+    std::this_thread::sleep_for(poll_interval);
+  }
+  return exit_code_of(status);
+}
+
+std::string own_program() {
+  return std::filesystem::canonical("/proc/self/exe").string();
+}
+
+}  // namespace tools

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiment/files/gnuplot.hpp"
+
+#include <signal.h>
+#include <spawn.h>
+#include <spdlog/fmt/fmt.h>
+#include <sys/wait.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <limits>
+#include <thread>
+
+extern char** environ;
+
+namespace tools {
+
+namespace {
+
+/// Runs a shell in its own process group: Ctrl-C on the terminal must not reach gnuplot.
+pid_t start(std::string directory, std::string script) {
+  std::string shell = "sh";
+  std::string option = "-c";
+  // A link in place of the log is removed, not followed.  -d: no init files.
+  std::string command = "cd -- \"$0\" && rm -f plot.log && exec gnuplot -d \"$1\" > plot.log 2>&1 < /dev/null";
+  char* arguments[] = {shell.data(), option.data(), command.data(), directory.data(), script.data(), nullptr};
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t usual;
+  sigemptyset(&usual);
+  sigaddset(&usual, SIGPIPE);
+  posix_spawnattr_setsigdefault(&attributes, &usual);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
+  pid_t pid = 0;
+  const int error = posix_spawnp(&pid, "sh", nullptr, &attributes, arguments, environ);
+  posix_spawnattr_destroy(&attributes);
+  return error == 0 ? pid : 0;
+}
+
+/// Processor time of a child; it is kept until waitpid().
+std::chrono::nanoseconds cpu_time(pid_t pid) {
+  clockid_t clock{};
+  timespec time{};
+  if (clock_getcpuclockid(pid, &clock) != 0 || clock_gettime(clock, &time) != 0) return {};
+  return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+}
+
+}  // namespace
+
+std::string gnuplot_text(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    quoted += byte < 0x20 || byte == 0x7f ? ' ' : c;
+    if (c == '\'') quoted += c;
+  }
+  return quoted + "'";
+}
+
+std::string axis_of_errors(const std::vector<double>& errors_m) {
+  constexpr double very_different = 5;
+  double min = std::numeric_limits<double>::infinity(), max = 0;
+  for (const double error_m : errors_m) {
+    min = std::min(min, error_m);
+    max = std::max(max, error_m);
+  }
+  if (!(min > 0) || !(max > very_different * min)) return "set yrange [0:*]\n";
+  return fmt::format("set logscale y\nset yrange [{:.3g}:*]\n", 0.05 * min);
+}
+
+bool run_gnuplot(const std::string& directory, const std::string& script, std::chrono::milliseconds cpu_limit,
+                 const std::function<bool()>& give_up) {
+  using Clock = std::chrono::steady_clock;
+  const pid_t pid = start(directory, script);
+  if (pid == 0) return false;
+  const auto deadline = Clock::now() + 20 * cpu_limit;
+  while (Clock::now() < deadline && cpu_time(pid) < cpu_limit && !give_up()) {
+    int status = 0;
+    const pid_t ended = waitpid(pid, &status, WNOHANG);
+    if (ended == pid) return status == 0;
+    if (ended < 0 && errno != EINTR) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  kill(-pid, SIGKILL);
+  while (waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {
+  }
+  return false;
+}
+
+}  // namespace tools

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "bridges/control/other_simulators.hpp"
+#include "bridges/control/sim_service.hpp"
+#include "bridges/lockstep/lockstep_service.hpp"
+#include "bridges/log/run_journal.hpp"
+#include "experiment/replay/replay_log.hpp"
+#include "experiment/replay/replay_ports.hpp"
+#include "experiment/run/run_buses.hpp"
+#include "experiment/run/tap_bus.hpp"
+#include "sim/bus/in_process_bus.hpp"
+#include "sim/bus/message_gate.hpp"
+#include "sim/run/run_control.hpp"
+#include "sim/world/world.hpp"
+#include "sim/world_file/load_world.hpp"
+
+namespace tools {
+
+/// World of a log that is run again: the recorded inputs are delivered at the same steps as in the run.  A log of
+/// several branches gives the last one.
+///
+/// With `for_programs` it has the LCM buses of its world, muted at first.  Programs that take part on them get the
+/// reports of the repeated steps; what they publish counts after set_live() only.
+class ReplayedWorld {
+ public:
+  /// Receives a message that the world publishes.
+  using Watch = std::function<void(std::string_view channel, std::span<const std::byte> payload)>;
+  struct Options {
+    std::string world;      ///< another world file; empty: the world in the log
+    sim::LoadOptions load;  ///< its `sets` are applied to the world
+    int threads = 0;        ///< threads that share a step; 0: one for each processor
+    Watch inputs = {};      ///< receives the recorded messages that are delivered
+    /// LCM URL of the bus of the world for programs, empty: LCM_DEFAULT_URL, then the default; unset: the buses have no
+    /// other participants.  The arguments of its programs are then read.
+    std::optional<std::string> for_programs = {};
+  };
+
+  /// Builds the world at the start of the log.  `log` must outlive this.  Throws std::runtime_error when the log cannot
+  /// be replayed, sim::ConfigError when the world cannot be built, bridges::BusError.
+  ReplayedWorld(const ReplayLog& log, const Options& options, Watch watch = {});
+
+  sim::World& world() { return world_; }
+  const sim::World& world() const { return world_; }
+  const sim::LoadedWorld& loaded() const { return loaded_; }
+  /// Bus of the world; what is published on it goes to the watch.
+  sim::Bus& bus() { return main_; }
+  RunBuses& buses() { return buses_; }
+  sim::RunControl& control() { return control_; }
+  const sim::RunControl& control() const { return control_; }
+  bridges::LockstepService& lockstep() { return lockstep_; }
+  bridges::SimService& service() { return service_; }
+  /// Returns the description of another simulator on the buses for programs; none when there is none.
+  std::optional<std::string> another_simulator();
+
+  /// Delivers the inputs before the first reports and publishes them.  To be called once, before step().
+  void start();
+  /// Delivers the inputs of the next step and runs it.  Throws sim::PhysicsFault.
+  void step();
+  /// Executes the requests after the last step.
+  void finish() { deliver(world_.step_number()); }
+  /// Executes a request that is not in the log, and returns the reply.  Throws std::runtime_error with the reason when
+  /// it is refused.
+  std::string request(const shoal::sim_control_request_t& request) { return service_.execute_local(request, nullptr); }
+  /// Saves the present state, and goes back to one that was saved; the inputs since then are delivered again.  Throws
+  /// sim::SnapshotError.
+  sim::Bytes save();
+  void load(const sim::Bytes& saved);
+  /// Returns whether the record has messages of programs.
+  bool has_commands() const;
+  /// Drops the inputs at this step and later, for a branch whose programs publish in their place.
+  void drop_inputs_from(std::int64_t step);
+  /// Takes all inputs of the record again, and forgets those of the branch.
+  void restore_inputs();
+  /// Sets whether messages and requests from outside count.  They are kept with the inputs of the record, so that they
+  /// are delivered again after a load().
+  void set_live(bool live) { live_ = live; }
+  /// Returns what could not be delivered.
+  const std::vector<std::string>& notes() const { return notes_; }
+
+ private:
+  TapBus::Listener tap();
+  std::map<std::string, std::unique_ptr<TapBus>> make_others();
+  std::vector<bridges::LockstepBus> lockstep_buses();
+  bridges::ServiceLinks service_links();
+  void check_times() const;
+  void add_serial_inputs(std::int64_t from_step);
+  /// Restores the snapshot with which the run, or the branch, started.
+  void restore(bool same_world);
+  /// Delivers the inputs of the world before this step.
+  void deliver(std::int64_t step);
+  void deliver(const ReplayLog::Input& input);
+  void admit(const std::string& bus, int link);
+  void execute(const ReplayLog::Input& input);
+  void note(const std::string& text);
+
+  const ReplayLog& log_;
+  sim::LoadedWorld loaded_;
+  Watch watch_, inputs_;
+  const bool for_programs_;
+  ReplayPorts serial_;
+  RunBuses buses_;
+  TapBus main_;
+  std::map<std::string, std::unique_ptr<TapBus>> others_;
+  bridges::OtherSimulators other_simulators_;
+  sim::RunControl control_;
+  sim::World world_;
+  // Writes down the requests of programs; what it publishes is not read.
+  sim::InProcessBus unread_;
+  bridges::JournalPorts no_ports_;
+  bridges::RunJournal journal_;
+  bridges::LockstepService lockstep_;
+  bridges::SimService service_;
+  std::size_t next_input_ = 0, next_own_ = 0;
+  std::int64_t end_of_inputs_ = std::numeric_limits<std::int64_t>::max();  // later ones of the record are dropped
+  std::vector<ReplayLog::Input> own_inputs_;                               // since then, while live
+  std::map<std::string, std::vector<sim::MessageGate::Delivery>> due_;     // inputs of the next step, by bus
+  std::set<std::pair<int, std::string>> spoken_;  // links and channels on which programs publish
+  bool live_ = false;
+  std::vector<std::string> notes_;
+};
+
+}  // namespace tools

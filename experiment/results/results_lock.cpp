@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiment/results/results_lock.hpp"
+
+#include <fcntl.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include "bridges/base/file_lock.hpp"
+#include "experiment/results/run_error.hpp"
+
+namespace tools {
+
+ResultsLock::ResultsLock(const std::string& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  folder_ = bridges::FileDescriptor(open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (error || folder_.number() < 0)
+    throw RunError(4, "bus",
+                   "cannot write results to '" + directory + "': " + (error ? error.message() : std::strerror(errno)));
+  if (const auto owner = bridges::lock_against_others(folder_.number()))
+    throw RunError(4, "bus",
+                   "cannot write results to '" + directory + "': " + *owner +
+                       " is writing there; choose another folder with --results");
+}
+
+}  // namespace tools

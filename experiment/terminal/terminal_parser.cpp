@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiment/terminal/terminal_parser.hpp"
+
+#include <utility>
+
+namespace tools {
+
+namespace {
+
+constexpr char escape_of_terminal = 27;
+constexpr std::size_t max_parameters = 64;  // bytes that are kept
+
+}  // namespace
+
+std::optional<TerminalPiece> TerminalParser::next(char byte) {
+  const State before = std::exchange(state_, State::none);
+  if (byte == escape_of_terminal) {
+    state_ = State::escape;
+    parameters_.clear();
+    if (before == State::escape) return TerminalPiece{TerminalPiece::Kind::escape, byte, {}};
+    return std::nullopt;
+  }
+  switch (before) {
+    case State::none:
+      return TerminalPiece{TerminalPiece::Kind::character, byte, {}};
+    case State::escape:
+      if (byte == '[') state_ = State::first_parameter;
+      if (byte == 'O') state_ = State::last;
+      if (state_ == State::none) return TerminalPiece{TerminalPiece::Kind::escaped, byte, {}};
+      return std::nullopt;
+    case State::first_parameter:
+      if (byte == '[') {
+        parameters_ += byte;
+        state_ = State::last;
+        return std::nullopt;
+      }
+      [[fallthrough]];
+    case State::parameters:
+      if (byte >= ' ' && byte <= '?') {
+        if (parameters_.size() < max_parameters) parameters_ += byte;
+        state_ = State::parameters;
+        return std::nullopt;
+      }
+      break;
+    case State::last:
+      break;
+  }
+  return TerminalPiece{TerminalPiece::Kind::sequence, byte, std::exchange(parameters_, {})};
+}
+
+}  // namespace tools

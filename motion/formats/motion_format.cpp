@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/formats/motion_format.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "motion/formats/pose_table.hpp"
+#include "sim/config/message_text.hpp"
+
+namespace tools {
+
+const std::vector<MotionFormat>& motion_formats() {
+  static const std::vector<MotionFormat> formats{
+      csv_format(),          ros_format(),           play_motion2_format(), webots_format(), mtn_format(),
+      open_r_table_format(), open_r_object_format(), mot_format(),          pos_format(),    opencat_format()};
+  return formats;
+}
+
+std::vector<std::string> motion_format_names() {
+  std::vector<std::string> names;
+  for (const MotionFormat& format : motion_formats()) names.emplace_back(format.name);
+  return names;
+}
+
+const MotionFormat* find_motion_format(std::string_view name) {
+  for (const MotionFormat& format : motion_formats())
+    if (format.name == name) return &format;
+  return nullptr;
+}
+
+const MotionFormat* motion_format_of_file(const std::string& path, std::string_view bytes) {
+  for (const MotionFormat& format : motion_formats())
+    if (!format.head.empty() && bytes.starts_with(format.head)) return &format;
+  for (const MotionFormat& format : motion_formats())
+    for (const std::string& ending : format.endings)
+      if (path.ends_with(ending)) return &format;
+  return nullptr;
+}
+
+std::vector<ExportedFile> files_of_motion(const MotionFormat& format, const sim::JointMotion& motion,
+                                          const JointNames& names, const FormatOptions& options, Losses& losses) {
+  if (format.write == nullptr && format.write_folder == nullptr)
+    refuse_motion(motion, std::string("'") + format.name + "' files can only be read");
+  if (motion.tracks().empty()) refuse_motion(motion, "needs a joint");
+  if (format.write_folder != nullptr) return format.write_folder(motion, names, options, losses);
+  return {{"", format.write(motion, names, options, losses)}};
+}
+
+std::string bytes_of_motion(const MotionFormat& format, const sim::JointMotion& motion, const JointNames& names,
+                            const FormatOptions& options, Losses& losses) {
+  return files_of_motion(format, motion, names, options, losses).front().bytes;
+}
+
+sim::JointMotion motion_of_bytes(const MotionFormat& format, const MotionSource& source, Losses& losses) {
+  if (format.read == nullptr)
+    throw sim::ConfigError({source.file + ": '" + format.name + "' files can only be written"});
+  sim::JointMotion motion = format.read(source, losses);
+  if (motion.name.empty()) motion.name = motion_name(std::filesystem::path(source.file).stem().string());
+  motion.vehicle = source.names.vehicle();
+  if (source.options.loop_step_s > 0) {
+    // A player of loops goes from the last pose to the first one in one step.
+    sim::MotionKey last;
+    last.at_s = motion.end_s() + source.options.loop_step_s;
+    for (const sim::MotionTrack& track : motion.tracks())
+      last.joints.emplace_back(track.joint, track.keys.front().value);
+    motion.keys.push_back(std::move(last));
+    motion.loop = true;
+  }
+  for (const sim::MotionTrack& track : motion.tracks()) {
+    const NamedJoint* const joint = source.names.find(track.joint);
+    if (joint != nullptr && joint->is_slider) motion.sliders.push_back(track.joint);
+  }
+  return motion;
+}
+
+void refuse_motion(const sim::JointMotion& motion, const std::string& text) {
+  throw sim::ConfigError({"motion '" + motion.name + "': " + text});
+}
+
+}  // namespace tools

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/record/record_view.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include "sim/world_file/vehicle_loader.hpp"
+
+namespace tools {
+
+void RecordView::serve(bool is_paused) {
+  page_.control().paused = is_paused;
+  page_.serve([this](const std::string& command, double, const std::string& text) {
+    try {
+      return RunView::Answer{true, execute(command, text)};
+    } catch (const std::runtime_error& error) {
+      return RunView::Answer{false, error.what()};
+    }
+  });
+}
+
+std::string RecordView::execute(const std::string& command, const std::string& text) {
+  if (command == "spawn")
+    throw sim::ConfigError({"a motion cannot have a vehicle that is spawned: add it by an action, {add: ...}"});
+  if (command != "do") throw sim::ConfigError({"a recording is steered by its keys"});
+  const sim::ConfigNode action = sim::parse_untrusted(text, "do");
+  sim::Diagnostics diagnostics;
+  sim::check_untrusted(action, "", diagnostics);
+  diagnostics.throw_if_any();
+  recorder_.change(action);
+  return fmt::format("recorded at {:.3f} s", recorder_.now_s());
+}
+
+}  // namespace tools

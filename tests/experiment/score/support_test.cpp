@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiment/score/support.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "experiment/score/scoring.hpp"
+#include "tests/devices/world_fixture.hpp"
+
+namespace {
+
+using Eigen::Vector2d;
+
+/// A table of 2 kg on four feet at (+-0.3, +-0.2) m; the mass is `offset_m` ahead of the middle, 0.5 m above ground.
+std::string table_world(double offset_m, const std::string& more = "") {
+  std::string parts;
+  for (const char* place : {"[0.3, 0.2, 0.05]", "[0.3, -0.2, 0.05]", "[-0.3, 0.2, 0.05]", "[-0.3, -0.2, 0.05]"})
+    parts += std::string("            - {shape: sphere, radius_m: 0.05, mass_kg: 1.0e-6, position_m: ") + place + "}\n";
+  return R"(shoal: 1
+physics: {step_s: 0.001}
+objects:
+  - {name: ground, fixed: true, parts: [{shape: plane}]}
+vehicles:
+  - name: t
+    model:
+      shoal: 1
+      vehicle: table
+      bodies:
+        - name: top
+          parts:
+            - {shape: sphere, radius_m: 0.05, mass_kg: 2, position_m: [)" +
+         std::to_string(offset_m) + ", 0, 0.5]}\n" + parts + more;
+}
+
+std::optional<tools::Support> support_of(test::TestWorld& test, double settle_s = 2) {
+  test.world.physics().watch_contacts(test.world.find_vehicle("t")->group());
+  test.run_for(settle_s);
+  return tools::support_of(test.world, *test.world.find_vehicle("t"));
+}
+
+TEST(Support, TheHullOfPointsHasNoInnerOnes) {
+  const auto hull = tools::convex_hull_of({{0, 0}, {1, 0}, {0.5, 0}, {1, 1}, {0, 1}, {0.4, 0.6}, {0, 0}});
+  ASSERT_EQ(hull.size(), 4u);
+  double area = 0;
+  for (std::size_t i = 0; i < 4; ++i)
+    area += (hull[i].x() * hull[(i + 1) % 4].y() - hull[i].y() * hull[(i + 1) % 4].x()) / 2;
+  EXPECT_NEAR(area, 1, 1e-15);  // positive: counter-clockwise
+  EXPECT_EQ(tools::convex_hull_of({{0, 0}, {1, 1}, {2, 2}}).size(), 2u);
+}
+
+TEST(Support, MarginsAreDistancesToTheNearestEdge) {
+  const std::vector<Vector2d> square{{0, 0}, {2, 0}, {2, 2}, {0, 2}};
+  EXPECT_NEAR(tools::margin_in(square, {0.5, 1}), 0.5, 1e-15);
+  EXPECT_NEAR(tools::margin_in(square, {2.5, 1}), -0.5, 1e-15);
+  EXPECT_NEAR(tools::margin_in(square, {3, 3}), -std::sqrt(2), 1e-15);  // to the corner
+}
+
+TEST(Support, OfATableAtRestIsTheRectangleOfItsFeet) {
+  for (const double offset_m : {0.0, 0.15}) {
+    test::TestWorld test(table_world(offset_m));
+    const auto support = support_of(test);
+    ASSERT_TRUE(support);
+    EXPECT_EQ(support->polygon_W.size(), 4u);
+    // 0.1 mm: the feet sink in by their softness, and the table tilts by it.
+    EXPECT_NEAR(support->static_margin_m, std::min(0.2, 0.3 - offset_m), 1e-4);
+    // At rest, zero-moment point and capture point are below the centre of mass.
+    EXPECT_NEAR(support->zmp_margin_m, support->static_margin_m, 1e-4);
+    EXPECT_NEAR(support->capture_margin_m, support->static_margin_m, 1e-4);
+    // Over the nearest edge, at a distance r from it and a height h, it rises by sqrt(r^2 + h^2) - h.
+    const double r = std::min(0.2, 0.3 - offset_m);
+    EXPECT_NEAR(support->nesm_m, std::hypot(r, 0.5) - 0.5, 1e-4);
+  }
+}
+
+TEST(Support, TheCapturePointIsAheadByTheSpeed) {
+  test::TestWorld test(table_world(0));
+  ASSERT_TRUE(support_of(test));
+  sim::Body& top = test.world.find_vehicle("t")->body("top");
+  top.set_velocity_W({1, 0, 0}, {0, 0, 0});
+  const auto support = tools::support_of(test.world, *test.world.find_vehicle("t"));
+  ASSERT_TRUE(support);
+  // From 0.3 m behind the edge, v sqrt(z / g) with z = 0.5 m: 0.3 - 0.2258 = 0.0742 m.
+  EXPECT_NEAR(support->capture_margin_m, 0.3 - std::sqrt(0.5 / 9.80665), 1e-4);
+  EXPECT_NEAR(support->static_margin_m, 0.2, 1e-4);
+}
+
+TEST(Support, InTheAirThereIsNone) {
+  test::TestWorld test(table_world(0));
+  EXPECT_FALSE(support_of(test, 0));
+}
+
+TEST(StabilityMetric, HasTheMarginsOfATable) {
+  test::TestWorld test(table_world(0.15) + "metrics: [{name: s, type: stability, vehicle: t, from_s: 1}]\n");
+  tools::Scoring scoring(test.world);
+  for (int i = 0; i < 2000; ++i) {
+    test.world.step();
+    scoring.after_step();
+  }
+  const auto figures = scoring.figures();
+  EXPECT_NEAR(figures.at("s.static_min_m"), 0.15, 1e-4);
+  EXPECT_NEAR(figures.at("s.static_mean_m"), 0.15, 1e-4);
+  EXPECT_NEAR(figures.at("s.zmp_min_m"), 0.15, 1e-3);
+  EXPECT_NEAR(figures.at("s.nesm_min_m"), std::hypot(0.15, 0.5) - 0.5, 1e-4);
+  EXPECT_EQ(figures.at("s.carried_share"), 1);
+  EXPECT_NEAR(figures.at("s.static_m"), 0.15, 1e-4);
+  EXPECT_NEAR(figures.at("s.zmp_m"), 0.15, 1e-3);
+  EXPECT_NEAR(figures.at("s.capture_m"), 0.15, 1e-3);
+}
+
+}  // namespace

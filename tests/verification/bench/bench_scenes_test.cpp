@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "sim/acoustics/channel.hpp"
+#include "sim/world/world_state.hpp"
+#include "verification/bench/bench_run.hpp"
+
+namespace {
+
+using tools::BenchRun;
+
+/// A test for each scene; named after it.
+class BenchScenes : public testing::TestWithParam<tools::BenchScene> {};
+
+INSTANTIATE_TEST_SUITE_P(All, BenchScenes, testing::ValuesIn(tools::bench_scenes()),
+                         [](const auto& scene) { return scene.param.name; });
+
+constexpr int some = 20;  // vehicles; two of each kind of the scene `mixed` at least
+
+std::uint64_t hash_after_2_s(const tools::BenchScene& scene, int threads) {
+  BenchRun run(scene, some, {}, threads);
+  run.run_for(2);
+  return run.world().state().run_hash();
+}
+
+TEST_P(BenchScenes, HasAsManyVehiclesAsRequested) {
+  for (const int vehicles : {1, 2, some, 101})
+    EXPECT_EQ(BenchRun(GetParam(), vehicles).world().vehicles().size(), static_cast<std::size_t>(vehicles));
+}
+
+TEST_P(BenchScenes, HasTheSameHashWithAnyNumberOfThreads) {
+  const std::uint64_t one = hash_after_2_s(GetParam(), 1);
+  EXPECT_EQ(hash_after_2_s(GetParam(), 2), one);
+  EXPECT_EQ(hash_after_2_s(GetParam(), 3), one);
+}
+
+TEST_P(BenchScenes, MovesEveryVehicle) {
+  BenchRun run(GetParam(), some);
+  std::vector<sim::Vector3d> begin;
+  for (const auto& vehicle : run.world().vehicles()) begin.push_back(vehicle->X_WV().translation());
+  std::set<std::string> at_rest;
+  run.run_for(6);  // wanderers may have to turn first
+  for (std::size_t i = 0; i < begin.size(); ++i)
+    if ((run.world().vehicles()[i]->X_WV().translation() - begin[i]).norm() < 0.02)
+      at_rest.insert(run.world().vehicles()[i]->name());
+  EXPECT_THAT(at_rest, testing::SizeIs(testing::Le(some / 10)));
+}
+
+TEST(BenchScene, NamesAreDifferentAndFound) {
+  std::set<std::string> names;
+  for (const tools::BenchScene& scene : tools::bench_scenes()) {
+    EXPECT_TRUE(names.insert(scene.name).second) << scene.name;
+    EXPECT_EQ(tools::find_bench_scene(scene.name), &scene);
+  }
+  EXPECT_EQ(tools::find_bench_scene("moon"), nullptr);
+}
+
+TEST(BenchScene, RoversOfTheCrowdPushAgainstEachOther) {
+  BenchRun run(tools::crowd_scene(), 25);
+  run.run_for(3);
+  int contacts = 0;
+  for (int i = 0; i < 100; ++i) {
+    run.step();
+    contacts += run.world().physics().last_step().contacts;
+  }
+  // Wheels and caster make three contacts of each rover with the ground; a push makes at least one more of two rovers.
+  EXPECT_GT(contacts / 100.0 / 25, 3.5);
+  EXPECT_GT(run.world().physics().quick_steps(), 0);
+}
+
+TEST(BenchScene, EveryModemOfTheAcousticSceneReceivesEveryMessage) {
+  BenchRun run(tools::acoustics_scene(), 10);
+  const auto flights = [&] { return run.world().acoustics().flights(); };
+  run.run_for(10);
+  const std::int64_t begin = flights();
+  run.run_for(10);  // each of ten sends once, and nine receive it
+  EXPECT_EQ(flights() - begin, 90);
+}
+
+}  // namespace

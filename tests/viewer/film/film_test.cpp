@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viewer/film/film.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "shoal/estimate_t.hpp"
+#include "shoal/sim_state_t.hpp"
+#include "sim/image/image_file.hpp"
+#include "tests/experiment/replay/replay_fixture.hpp"
+#include "viewer/film/camera_rig.hpp"
+#include "viewer/film/film_source.hpp"
+#include "viewer/film/scene_painter.hpp"
+#include "viewer/images/overview.hpp"
+
+namespace {
+
+using test::driven_world;
+using test::forward;
+using test::RecordedRun;
+using testing::HasSubstr;
+
+std::string png_text(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class FilmTest : public test::ReplayTest {
+ protected:
+  tools::FilmOptions options(const std::string& out) const {
+    tools::FilmOptions film;
+    film.source = log;
+    film.out = folder.file(out);
+    film.format = {80, 60, 10};
+    film.cameras = {"chase:r1"};
+    film.overlays = tools::parse_overlays("all");
+    film.quiet = true;
+    film.threads = 2;
+    return film;
+  }
+  std::string film_error(const tools::FilmOptions& film) const {
+    try {
+      tools::make_film(film);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+};
+
+TEST_F(FilmTest, ShowsTheRunOfALogWhereItWas) {
+  record(driven_world());
+  // The last sim.state of the record.
+  shoal::sim_state_t state{};
+  bridges::EventLogReader reader(log);
+  while (const auto event = reader.next())
+    if (event->channel == "sim.state") state = shoal::decode<shoal::sim_state_t>(event->payload, shoal::Finite::any);
+  const auto source = tools::open_film_source(log, {});
+  const double step_s = sim::to_seconds(source->world().step_time());
+  ASSERT_TRUE(source->advance_to(sim::from_seconds(static_cast<double>(test::steps) * step_s)));
+  EXPECT_EQ(source->world().state().hash(), state_hash);
+  EXPECT_FALSE(source->step());
+  ASSERT_EQ(state.vehicle.size(), 1U);
+  const sim::Vector3d p_W(state.position_m[0][0], state.position_m[0][1], state.position_m[0][2]);
+  EXPECT_GT(p_W.x(), 0.3);
+  // The segmentation shows the vehicle at the projection of this position, seen from above.
+  tools::SceneView view;
+  view.optics.width = 160, view.optics.height = 120;
+  view.options.kind = sim::ImageKind::groups;
+  view.X_WS = tools::look_at(p_W + sim::Vector3d(0.3, 0.2, 4), p_W + sim::Vector3d(0.3, 0.2, 0));
+  view.antialias = 1;
+  tools::ScenePainter painter(source->world(), 2);
+  const sim::Image8 image = painter.paint(view).image;
+  const auto pixel = sim::Optics(view.optics).project(view.X_WS.inverse() * p_W);
+  ASSERT_TRUE(pixel);
+  const auto label = static_cast<std::uint16_t>(source->world().find_vehicle("r1")->group() + 1);
+  const std::uint8_t* seen = image.at(static_cast<int>(pixel->x()), static_cast<int>(pixel->y()));
+  const auto color = sim::label_color(label);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(seen[i], color[i]);
+}
+
+TEST_F(FilmTest, HasAFrameForEachStepOfTheFilmAndEqualFramesTwice) {
+  record(driven_world());
+  tools::FilmOptions film = options("a/");
+  film.from_s = 0.5;
+  film.until_s = 1.5;
+  film.speed = 0.5;
+  const tools::FilmOutcome outcome = tools::make_film(film);
+  EXPECT_EQ(outcome.frames, 21);  // 1 s of the run is 2 s of film, and both ends
+  EXPECT_NEAR(outcome.sim_s, 1, 1e-9);
+  film.out = folder.file("b/");
+  film.threads = 1;
+  tools::make_film(film);
+  for (const char* frame : {"frame_00000.png", "frame_00011.png", "frame_00020.png"})
+    EXPECT_EQ(png_text(folder.file("a/") + frame), png_text(folder.file("b/") + frame)) << frame;
+  EXPECT_NE(png_text(folder.file("a/frame_00000.png")), png_text(folder.file("a/frame_00020.png")));
+}
+
+TEST_F(FilmTest, EndsWithTheLog) {
+  record(driven_world());
+  tools::FilmOptions film = options("a.avi");
+  film.until_s = 100;
+  EXPECT_EQ(tools::make_film(film).frames, 31);
+  film.from_s = 50;
+  EXPECT_THAT(film_error(film), HasSubstr("ends at 3 s, before --from"));
+}
+
+TEST_F(FilmTest, DrawsTheEstimatesOfTheLog) {
+  const auto with_estimates = [this] {
+    RecordedRun run(driven_world("metrics: [{name: error, type: position_error, vehicle: r1, channel: r1.estimate}]\n"),
+                    log);
+    const auto mailbox = run.gate.open_mailbox("r1.estimate");
+    run.run(test::steps, [&](std::int64_t step) {
+      shoal::estimate_t estimate{};
+      estimate.utime = run.world.epoch_us() + run.world.now().count();
+      estimate.position_m[1] = 0.5;
+      for (const int i : {0, 4, 8}) estimate.covariance_m2[i] = 0.01;
+      if (step % 10 == 0) run.send("r1.estimate", estimate);
+    });
+  };
+  with_estimates();
+  const tools::LogEstimates estimates(log, 0, 10, 0.05);
+  const tools::LogEstimate* found = estimates.find("r1", 1.05, 1);
+  ASSERT_NE(found, nullptr);
+  EXPECT_NEAR(found->time_s, 1, 0.11);
+  EXPECT_EQ(found->position_m, sim::Vector3d(0, 0.5, 0));
+  EXPECT_EQ(estimates.find("r1", 20, 1), nullptr);
+  EXPECT_EQ(estimates.find("r2", 1, 1), nullptr);
+  EXPECT_EQ(estimates.vehicles(), std::vector<std::string>{"r1"});
+  // The image differs by them.
+  tools::FilmOptions film = options("with/");
+  film.until_s = film.from_s = 1;
+  film.cameras = {"top"};
+  tools::make_film(film);
+  film.out = folder.file("without/");
+  film.overlays.ellipses = false;
+  tools::make_film(film);
+  EXPECT_NE(png_text(folder.file("with/frame_00000.png")), png_text(folder.file("without/frame_00000.png")));
+}
+
+TEST_F(FilmTest, NamesVehiclesAndCamerasThatAreMissing) {
+  record(driven_world());
+  const auto with_camera = [&](const std::string& camera) {
+    tools::FilmOptions film = options("a.avi");
+    film.cameras = {camera};
+    return film_error(film);
+  };
+  EXPECT_THAT(with_camera("chase:r9"), HasSubstr("there is no vehicle 'r9' at 0.000 s; vehicles: r1"));
+  EXPECT_THAT(with_camera("from:r1/eye"), HasSubstr("there is no camera 'r1/eye'; this world has none"));
+  EXPECT_THAT(with_camera("chase"), HasSubstr("must be all, top,"));
+  EXPECT_THAT(with_camera("no.yaml"), HasSubstr("no.yaml"));
+  tools::FilmOptions film = options("a.avi");
+  film.split = true;
+  EXPECT_THAT(film_error(film), HasSubstr("vehicle 'r1' has no camera for --split 2"));
+  EXPECT_FALSE(std::filesystem::exists(folder.file("a.avi")));
+}
+
+TEST_F(FilmTest, NamesWhatALogLacks) {
+  const std::string foreign = folder.file("foreign.lcm");
+  record(driven_world());
+  test::copy_log(log, foreign, [](const bridges::LogEvent& event) { return event.channel == "sim.info"; });
+  tools::FilmOptions film = options("a.avi");
+  film.source = foreign;
+  EXPECT_THAT(film_error(film), HasSubstr("contains no sim.info, which describes the world"));
+  film.source = log;
+  film.load.seed = 4;
+  EXPECT_THAT(film_error(film), HasSubstr("--seed and --set are for worlds"));
+}
+
+TEST_F(FilmTest, CamerasSeeTheVehicleInTheMiddle) {
+  record(driven_world());
+  const auto source = tools::open_film_source(log, {});
+  source->advance_to(sim::from_seconds(1));
+  const sim::Vector3d p_W = source->world().find_vehicle("r1")->X_WV().translation();
+  tools::SceneView like;
+  like.optics.width = 160, like.optics.height = 120;
+  for (const char* text : {"chase:r1", "orbit:r1", "top:r1", "top", "all"}) {
+    const auto rig = tools::make_camera_rig(text, source->world(), like);
+    const tools::SceneView view = rig->view(0);
+    const auto pixel = sim::Optics(view.optics).project(view.X_WS.inverse() * p_W);
+    ASSERT_TRUE(pixel) << text;
+    EXPECT_NEAR(pixel->x(), 80, 16) << text;
+    EXPECT_NEAR(pixel->y(), 60, 16) << text;
+  }
+}
+
+}  // namespace

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "autonomy/behaviours/avoid_behaviour.hpp"
+#include "tools/command_line/declared_options.hpp"
+
+namespace autonomy {
+
+/// Options of avoidance.  Their defaults are the values before declare().
+struct AvoidOptions {
+  std::string law = "none";
+  AvoidanceParams params;
+  ObstacleTracks::Params tracks;
+
+  void declare(command_line::DeclaredOptions& options);
+  /// Nothing when the vehicle is not to avoid anything.
+  std::optional<Avoidance> make() const;
+  /// Returns the behaviour, which avoids obstacles if that was chosen.
+  std::unique_ptr<HelmBehaviour> around(std::unique_ptr<HelmBehaviour> behaviour) const;
+};
+
+}  // namespace autonomy

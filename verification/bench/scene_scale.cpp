@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "verification/bench/rover_arena.hpp"
+
+namespace tools {
+
+/// For comparison with figures of before `land`.
+BenchScene scale_scene() {
+  return {"scale",
+          "as land, but the lidars stand above the hulls and see no rovers, which push each other; kept for comparison",
+          {1, 10, 100, 1000},
+          [](int vehicles) {
+            return rover_arena_text({"scale", "[0.15, 0, 0.15]"}, vehicles);
+          },
+          wanderers};
+}
+
+}  // namespace tools

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "viewer/film/film_writer.hpp"
+
+namespace tools {
+
+/// Writer of AVI files (RIFF, version 1) with Motion JPEG, which most players show.
+class AviFile final : public FilmWriter {
+ public:
+  AviFile(std::string file, const FilmFormat& format);
+  ~AviFile() override;
+
+  void add(const sim::Image8& frame) override;
+  void finish() override;
+
+ private:
+  /// Frame in the index.
+  struct Entry {
+    std::uint32_t offset = 0, bytes = 0;
+  };
+
+  std::string header() const;
+  void write(const std::string& bytes);
+  [[noreturn]] void fail() const;
+
+  std::string file_, part_;
+  FilmFormat format_;
+  std::FILE* out_ = nullptr;
+  std::vector<Entry> entries_;
+  std::uint64_t data_bytes_ = 0;  // of all frames with their heads
+  std::uint32_t max_frame_bytes_ = 0;
+  sim::Bytes jpeg_;
+};
+
+}  // namespace tools

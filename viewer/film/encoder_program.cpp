@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viewer/film/encoder_program.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spdlog/fmt/fmt.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include "experiment/files/no_links.hpp"
+#include "experiment/process/child_program.hpp"
+#include "sim/config/message_text.hpp"
+
+namespace tools {
+
+namespace {
+
+std::vector<std::string> arguments_of(const FilmFormat& format, const std::vector<std::string>& codec,
+                                      const std::string& part) {
+  std::vector<std::string> arguments{"ffmpeg",
+                                     "-hide_banner",
+                                     "-loglevel",
+                                     "error",
+                                     "-y",
+                                     "-f",
+                                     "rawvideo",
+                                     "-pix_fmt",
+                                     "rgb24",
+                                     "-s",
+                                     fmt::format("{}x{}", format.width, format.height),
+                                     "-r",
+                                     fmt::format("{}", format.fps),
+                                     "-i",
+                                     "pipe:0",
+                                     "-an"};
+  arguments.insert(arguments.end(), codec.begin(), codec.end());
+  arguments.push_back("file:" + part);
+  return arguments;
+}
+
+}  // namespace
+
+bool has_ffmpeg() {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin");
+  std::string folder;
+  while (std::getline(folders, folder, ':'))
+    if (access((folder.empty() ? "ffmpeg" : folder + "/ffmpeg").c_str(), X_OK) == 0) return true;
+  return false;
+}
+
+EncoderProgram::EncoderProgram(std::string file, const FilmFormat& format, const std::vector<std::string>& codec)
+    : file_(std::move(file)), part_(file_ + ".part"), log_(file_ + ".log") {
+  for (const std::string* path : {&part_, &log_}) make_part_file<FilmError>(file_, *path);
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) throw FilmError(file_ + ": no pipe to ffmpeg: " + std::strerror(errno));
+  const bridges::FileDescriptor read_end(ends[0]);
+  input_ = bridges::FileDescriptor(ends[1]);
+  fcntl(ends[1], F_SETPIPE_SZ, 1 << 20);  // fewer switches between the programs
+  ChildProgram program{"ffmpeg", arguments_of(format, codec, part_), own_environment(), log_, read_end.number()};
+  const int error = start_child(program, pid_);
+  if (error == 0) return;
+  unlink(part_.c_str());
+  unlink(log_.c_str());
+  throw FilmError(file_ + ": ffmpeg cannot be started: " + std::strerror(error));
+}
+
+EncoderProgram::~EncoderProgram() {
+  if (pid_ > 0) {
+    kill(pid_, SIGKILL);
+    wait();
+    unlink(part_.c_str());
+  }
+  unlink(log_.c_str());
+}
+
+int EncoderProgram::wait() {
+  int status = 0;
+  while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+  }
+  pid_ = -1;
+  return status;
+}
+
+std::string EncoderProgram::last_words() const {
+  std::ifstream log(log_);
+  std::string line, last;
+  while (std::getline(log, line))
+    if (!line.empty()) last = line;
+  return sim::printable(sim::shortened(last));
+}
+
+void EncoderProgram::fail(int status) {
+  unlink(part_.c_str());
+  const std::string words = last_words();
+  const std::string how = WIFSIGNALED(status) ? fmt::format("was ended by signal {}", WTERMSIG(status))
+                                              : fmt::format("ended with exit code {}", WEXITSTATUS(status));
+  throw FilmError(fmt::format("{}: ffmpeg {}{}", file_, how, words.empty() ? "" : ": " + words));
+}
+
+void EncoderProgram::add(const sim::Image8& frame) {
+  const std::uint8_t* at = frame.data.data();
+  std::size_t left = frame.data.size();
+  while (left > 0) {
+    const ssize_t written = write(input_.number(), at, left);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) {
+      input_ = bridges::FileDescriptor();
+      fail(wait());
+    }
+    at += written;
+    left -= static_cast<std::size_t>(written);
+  }
+}
+
+void EncoderProgram::finish() {
+  input_ = bridges::FileDescriptor();  // the end of its input
+  const int status = wait();
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fail(status);
+  if (std::rename(part_.c_str(), file_.c_str()) == 0) return;
+  const std::string reason = std::strerror(errno);
+  unlink(part_.c_str());
+  throw FilmError(file_ + ": cannot be written: " + reason);
+}
+
+}  // namespace tools

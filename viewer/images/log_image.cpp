@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viewer/images/log_image.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "bridges/log/event_log.hpp"
+#include "shoal/image_t.hpp"
+#include "shoal/message_codec.hpp"
+#include "shoal/sim_info_t.hpp"
+#include "sim/image/image_file.hpp"
+#include "viewer/images/camera_image.hpp"
+#include "viewer/images/ranging_plot.hpp"
+
+namespace tools {
+
+namespace {
+
+/// Messages of one channel: all of them where all are drawn, else the selected one.
+class Chosen {
+ public:
+  Chosen(const std::string& channel, const ImageChoice& choice) : channel_(channel), choice_(choice) {}
+
+  void take(const bridges::LogEvent& event) {
+    // Start of simulated time.
+    if (event.channel == "sim.info" && !start_known_) learn_start(event);
+    if (!first_utime_) first_utime_ = event.utime;
+    if (event.channel != channel_) return;
+    // Type and time of the message.
+    const std::int64_t type = shoal::fingerprint(event.payload);
+    if (count_ == 0) type_ = type;
+    if (type != type_) throw std::runtime_error("messages of several types");
+    const int number = count_++;
+    if (first_s_ > last_s_) first_s_ = time_s(event);
+    last_s_ = time_s(event);
+    if (are_all_drawn(type)) {
+      payloads_.emplace_back(event.payload);
+      return;
+    }
+    // Keep the message nearest to the choice.
+    const double away_s = choice_.at_s ? std::abs(last_s_ - *choice_.at_s) : 0;
+    const bool desired = choice_.number ? number == *choice_.number
+                         : choice_.at_s ? payloads_.empty() || away_s < away_s_
+                                        : true;
+    if (!desired) return;
+    payloads_.assign(1, event.payload);
+    number_ = number;
+    chosen_s_ = last_s_;
+    away_s_ = away_s;
+  }
+
+  /// Throws when there is no such message.
+  const std::vector<sim::Bytes>& payloads(const std::vector<std::string>& problems) const {
+    if (count_ == 0)
+      throw std::runtime_error("no event on channel '" + channel_ + "'; " +
+                               (problems.empty() ? "see shoal log info" : problems.back()));
+    if (are_all_drawn(type_)) {
+      if (choice_.number || choice_.at_s)
+        throw std::runtime_error("all its messages are drawn; --number and --at choose among images, clouds and scans");
+      return payloads_;
+    }
+    if (payloads_.empty())
+      throw std::runtime_error(fmt::format("there is no message {}; there are {}, from 0", *choice_.number, count_));
+    if (choice_.at_s && (*choice_.at_s < first_s_ - slack_s() || *choice_.at_s > last_s_ + slack_s()))
+      throw std::runtime_error(fmt::format("there is no message at {:g} s; they are from {:.3f} to {:.3f} s",
+                                           *choice_.at_s, first_s_, last_s_));
+    return payloads_;
+  }
+
+  std::int64_t type() const { return type_; }
+
+  std::string text() const {
+    if (are_all_drawn(type_)) return fmt::format("{} messages from {:.3f} to {:.3f} s", count_, first_s_, last_s_);
+    return fmt::format("message {} of 0 to {}, at {:.3f} s", number_, count_ - 1, chosen_s_);
+  }
+
+ private:
+  void learn_start(const bridges::LogEvent& event) {
+    try {
+      first_utime_ = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any).epoch_utime;
+      start_known_ = true;
+    } catch (const shoal::MessageError&) {
+      // The channel belongs to another program that uses the name.
+    }
+  }
+
+  double time_s(const bridges::LogEvent& event) const {
+    return static_cast<double>(event.utime - *first_utime_) * 1e-6;
+  }
+
+  /// Permits a time up to one period before the first and after the last message, or one second for a single message.
+  double slack_s() const { return count_ > 1 ? (last_s_ - first_s_) / (count_ - 1) : 1; }
+
+  const std::string& channel_;
+  const ImageChoice& choice_;
+  bool start_known_ = false;
+  std::optional<std::int64_t> first_utime_;
+  int count_ = 0, number_ = 0;
+  std::int64_t type_ = 0;
+  double first_s_ = 1, last_s_ = 0, chosen_s_ = 0, away_s_ = 0;
+  std::vector<sim::Bytes> payloads_;
+};
+
+}  // namespace
+
+LogImage draw_log(const std::string& log, const std::string& channel, const std::string& png,
+                  const ImageChoice& choice) {
+  bridges::EventLogReader reader(log);
+  Chosen chosen(channel, choice);
+  while (const auto event = reader.next()) chosen.take(*event);
+  const std::vector<sim::Bytes>& payloads = chosen.payloads(reader.problems());
+  if (chosen.type() == shoal::image_t::getHash())
+    sim::write_image(png, displayable(shoal::decode<shoal::image_t>(payloads.front(), shoal::Finite::any)));
+  else
+    draw_ranging(payloads, channel, png);
+  return {chosen.text(), reader.problems()};
+}
+
+}  // namespace tools

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viewer/log/log_distances.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "viewer/page_data/view_json.hpp"
+
+namespace tools {
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// Poses this close in time are of the same time.
+constexpr std::int64_t same_time_us = 1000;
+
+/// Position of a point of a body in the world; none: these poses lack the body.
+std::optional<sim::Vector3d> position_of(const LogPoses::Poses& poses, const std::string& body,
+                                         const sim::Vector3d& p_B) {
+  const auto found = std::find(poses.names->begin(), poses.names->end(), body);
+  const auto i = static_cast<std::size_t>(found - poses.names->begin());
+  if (i >= poses.message.position_m.size()) return std::nullopt;
+  const std::vector<double>& p = poses.message.position_m[i];
+  const std::vector<float>& q = poses.message.orientation[i];
+  return sim::Vector3d(p[0], p[1], p[2]) + sim::Quaterniond(q[0], q[1], q[2], q[3]).normalized() * p_B;
+}
+
+}  // namespace
+
+LogDistances::LogDistances(const std::string& path_a, const LogIndex& a, const std::string& path_b, const LogIndex& b,
+                           const std::string& scene)
+    : a_(path_a, a),
+      b_(path_b, b),
+      start_us_(std::max(a.start_us(), b.start_us())),
+      end_us_(std::min(a.end_us(), b.end_us())) {
+  read_vehicles(scene);
+  if (end_us_ >= start_us_ && !vehicles_.empty()) times_ = max_times;
+}
+
+void LogDistances::read_vehicles(const std::string& scene) {
+  const Json json = Json::parse(scene, nullptr, false);
+  try {
+    for (const Json& vehicle : json.at("vehicles")) {
+      const Json& pose = vehicle.at("pose");
+      if (vehicles_.size() >= max_vehicles) {
+        ++left_out_;
+        continue;
+      }
+      vehicles_.push_back({vehicle.at("name").get<std::string>(),
+                           json.at("bodies").at(vehicle.at("body").get<std::size_t>()).at("name").get<std::string>(),
+                           {pose.at(0).get<double>(), pose.at(1).get<double>(), pose.at(2).get<double>()},
+                           {}});
+    }
+  } catch (const Json::exception&) {  // a damaged scene: the vehicles up to here
+  }
+}
+
+void LogDistances::add_time(std::int64_t time_us) {
+  const LogPoses::Poses* const a = a_.at(time_us);
+  if (a == nullptr || (!t_us_.empty() && a->time_us == t_us_.back())) return;
+  const LogPoses::Poses* const b = b_.at(a->time_us);
+  const bool comparable = b != nullptr && std::abs(b->time_us - a->time_us) <= same_time_us;
+  t_us_.push_back(a->time_us);
+  for (Vehicle& vehicle : vehicles_) {
+    double distance_m = std::numeric_limits<double>::quiet_NaN();
+    if (comparable) {
+      const auto p_a = position_of(*a, vehicle.body, vehicle.p_BV), p_b = position_of(*b, vehicle.body, vehicle.p_BV);
+      if (p_a && p_b) distance_m = (*p_a - *p_b).norm();
+    }
+    vehicle.distance_m.push_back(distance_m);
+  }
+}
+
+bool LogDistances::compute(std::chrono::steady_clock::time_point deadline) {
+  while (done_ < times_ && std::chrono::steady_clock::now() < deadline) {
+    const double share = static_cast<double>(done_) / static_cast<double>(times_ - 1);
+    add_time(start_us_ + std::llround(share * static_cast<double>(end_us_ - start_us_)));
+    ++done_;
+  }
+  return done_ >= times_;
+}
+
+std::string LogDistances::text(const std::optional<LogDifference>& difference) const {
+  Json vehicles = Json::array();
+  for (const Vehicle& vehicle : vehicles_) {
+    Json distances = Json::array();
+    constexpr double per_m = 1e6;
+    for (const double d : vehicle.distance_m)
+      distances.push_back(std::isfinite(d) ? Json(std::round(d * per_m) / per_m) : Json(nullptr));
+    vehicles.push_back({{"name", vehicle.name}, {"distance_m", std::move(distances)}});
+  }
+  return json_text({{"op", "distances"},
+                    {"t_us", t_us_},
+                    {"differs_us", difference ? Json(difference->time_us) : Json(nullptr)},
+                    {"left_out", left_out_},
+                    {"vehicles", std::move(vehicles)}});
+}
+
+}  // namespace tools

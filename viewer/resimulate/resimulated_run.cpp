@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "viewer/resimulate/resimulated_run.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <thread>
+
+#include "experiment/results/run_error.hpp"
+#include "experiment/run/scores_message.hpp"
+#include "experiment/score/saved_scores.hpp"
+#include "sim/base/log.hpp"
+#include "sim/config/message_text.hpp"
+#include "sim/state/state_archive.hpp"
+
+namespace tools {
+
+namespace {
+
+using std::chrono::microseconds;
+
+/// Snapshots of the last ten minutes are kept; to go further back the run starts again.
+constexpr std::int64_t snapshots_us = 600'000'000;
+constexpr std::size_t max_snapshot_bytes = std::size_t{64} << 20;
+/// The interval between two snapshots is at least this multiple of the cost of the last one.
+constexpr int rest_per_snapshot = 80;
+constexpr microseconds paused_wait{20'000};
+
+ReplayedWorld::Options replay_options(const ResimulatedRun::Options& options, ReplayedWorld::Watch inputs) {
+  ReplayedWorld::Options replay{"", options.load, options.threads, std::move(inputs), {}};
+  if (options.launch) replay.for_programs = options.lcm_url;
+  return replay;
+}
+
+}  // namespace
+
+ResimulatedRun::ResimulatedRun(const Options& options, const std::string& version)
+    : log_(read_replay_log(options.log)),
+      page_(options.view, version),
+      replayed_(log_, replay_options(options, page_tap()), page_tap()),
+      scoring_(replayed_.world()),
+      view_(
+          replayed_.bus(), replayed_.world(), [this](shoal::sim_scores_t& message) { fill_scores(scoring_, message); },
+          [] { return true; }),
+      control_(replayed_.control()),
+      snapshots_(snapshots_us / world().step_time().count(), max_snapshot_bytes) {
+  if (options.launch) check_buses();
+  if (options.launch && !replayed_.loaded().config.processes.empty())
+    programs_ = std::make_unique<BranchPrograms>(
+        replayed_, [this](const std::string& command, double value) { return execute(command, value, ""); });
+  if (log_.snapshot)
+    if (const std::string problem = restore_scores(scoring_, log_.snapshot->scores); !problem.empty())
+      sim::log_warn("{}: {}", log_.path, problem);
+  control_.speed = 1;
+  page_.start(world(), end_s(), {"recorded", programs(), programs_ != nullptr});
+  replayed_.start();
+  first_ = save();
+  after_step();
+}
+
+/// Programs need buses of this machine without another simulator.
+void ResimulatedRun::check_buses() {
+  if (replayed_.buses().leave_machine())
+    throw RunError(2, "configuration", "--launch: the buses of a record that is run again must not leave this machine");
+  if (const auto other = replayed_.another_simulator())
+    throw RunError(4, "bus", *other + "; choose another port with --lcm-url");
+}
+
+const char* ResimulatedRun::programs() const {
+  if (restarted_) return "restarted programs";
+  return replayed_.has_commands() ? "recorded commands" : "no programs";
+}
+
+std::vector<std::string> ResimulatedRun::commands() const {
+  std::vector<std::string> commands;
+  if (!programs_) return commands;
+  for (const sim::ProcessConfig& process : replayed_.loaded().config.processes)
+    commands.push_back(fmt::format("{}", fmt::join(process.command, " ")));
+  return commands;
+}
+
+ReplayedWorld::Watch ResimulatedRun::page_tap() {
+  return [this](std::string_view channel, std::span<const std::byte> payload) {
+    page_.message(channel, payload, world().now());
+  };
+}
+
+double ResimulatedRun::end_s() const {
+  return sim::to_seconds(world().step_time()) * static_cast<double>(log_.usable_step());
+}
+
+/// The state of the world, that of the scores, and the size of the first.
+sim::Bytes ResimulatedRun::save() {
+  sim::Bytes saved = replayed_.save();
+  const std::uint64_t size = saved.size();
+  auto scores = sim::StateArchive::saver();
+  scoring_.visit_state(scores, History::length);
+  scores.end();
+  const sim::Bytes rest = scores.take_bytes();
+  saved.insert(saved.end(), rest.begin(), rest.end());
+  const auto* const bytes = reinterpret_cast<const std::byte*>(&size);
+  saved.insert(saved.end(), bytes, bytes + sizeof size);
+  return saved;
+}
+
+void ResimulatedRun::load(const sim::Bytes& saved) {
+  std::uint64_t size = 0;
+  std::memcpy(&size, saved.data() + saved.size() - sizeof size, sizeof size);
+  const auto scores_at = saved.begin() + static_cast<std::ptrdiff_t>(size);
+  replayed_.load({saved.begin(), scores_at});
+  const sim::Bytes rest(scores_at, saved.end() - sizeof size);
+  auto scores = sim::StateArchive::restorer(rest);
+  scoring_.visit_state(scores, History::length);
+  scores.end();
+}
+
+bool ResimulatedRun::at_end() const {
+  return !branched_ && world().step_number() >= log_.usable_step();
+}
+
+void ResimulatedRun::after_step() {
+  view_.after_step();
+  page_.after_step(world(), view_, control_);
+  if (programs_) programs_->end_of_step();
+  // Snapshots for going back: one in a simulated second, if they do not take too long.
+  const auto begin = Clock::now();
+  const std::int64_t per_second = std::max<std::int64_t>(1, 1'000'000 / world().step_time().count());
+  const std::int64_t step = world().step_number();
+  if (step % per_second != 0 || begin < not_before_ || snapshots_.newest_until(step) == step) return;
+  if (const auto newest = snapshots_.newest_until(std::numeric_limits<std::int64_t>::max()); newest && *newest > step)
+    return;
+  if (programs_ && programs_->running()) return;  // its programs have no snapshots
+  snapshots_.add(step, save());
+  const auto end = Clock::now();
+  not_before_ = end + rest_per_snapshot * (end - begin);
+}
+
+void ResimulatedRun::step() {
+  const std::int64_t step = world().step_number();
+  try {
+    // Changes that were made on this branch before it was rewound.
+    const auto [from, to] = changes_.equal_range(step);
+    for (auto change = from; catch_up_ && change != to; ++change) replayed_.request(change->second);
+    replayed_.step();
+  } catch (const sim::PhysicsFault& error) {
+    return fail(std::string("the world cannot continue: ") + error.what());
+  } catch (const std::runtime_error& error) {
+    page_.problem(error.what());
+  }
+  scoring_.after_step();
+  control_.step_taken();
+  after_step();
+  if (catch_up_ && world().step_number() >= *catch_up_) arrive();
+  if (at_end() || (control_.until && world().now() >= *control_.until)) {
+    control_.clear_until();
+    control_.set_paused(true);
+  }
+}
+
+/// Pauses a run that cannot continue; it can be taken back.
+void ResimulatedRun::fail(const std::string& why) {
+  faulty_ = true;
+  control_.set_paused(true);
+  catch_up_.reset();
+  if (programs_) programs_->stop();
+  sim::log_error("{}", why);
+  page_.problem(why);
+}
+
+void ResimulatedRun::serve() {
+  const auto carry_out = [this](const std::string& command, double value, const std::string& text) {
+    try {
+      return RunView::Answer{true, execute(command, value, text)};
+    } catch (const std::runtime_error& error) {
+      return RunView::Answer{false, error.what()};
+    }
+  };
+  page_.serve(world(), view_, control_, programs_ ? programs_->waits_for() : "", carry_out);
+}
+
+/// Returns whether no program is waited for.
+bool ResimulatedRun::programs_are_ready() {
+  try {
+    return programs_->ready();
+  } catch (const std::runtime_error& error) {  // RunError, LockstepTimeout
+    fail(error.what());
+    return false;
+  }
+}
+
+microseconds ResimulatedRun::advance() {
+  serve();
+  if (programs_ && !programs_are_ready()) return faulty_ ? paused_wait : microseconds{0};
+  if (catch_up_ && world().step_number() >= *catch_up_) arrive();
+  if (catch_up_) {
+    step();
+    return microseconds{0};
+  }
+  if (!control_.may_step() || at_end() || faulty_) return paused_wait;
+  const microseconds wait =
+      control_.paused ? microseconds{0} : pacer_.until(world().now() + world().step_time(), control_);
+  if (wait > microseconds{0}) return std::min(wait, paused_wait);
+  step();
+  return microseconds{0};
+}
+
+void ResimulatedRun::run(const std::function<bool()>& goes_on) {
+  while (goes_on())
+    if (const microseconds wait = advance(); wait > microseconds{0}) std::this_thread::sleep_for(wait);
+}
+
+std::string ResimulatedRun::place() const {
+  return fmt::format("step {}, {:.6g} s, {}", world().step_number(), sim::to_seconds(world().now()),
+                     branched_ ? fmt::format("branch {}", control_.branch) : "record");
+}
+
+std::string ResimulatedRun::execute(const std::string& command, double value, const std::string& text) {
+  if (command == "branch") return branch(text);
+  if (command == "rewind") return rewind(value);
+  if (command == "where") return place();
+  if (command == "resume" && faulty_) throw std::runtime_error("the run cannot continue: go back");
+  if (command == "resume" && at_end()) throw std::runtime_error("the record ends here: go back, or branch");
+  if (set_pace(control_, command, value)) return place();
+  if (command == "until") {
+    if (!(value > sim::to_seconds(world().now()) && value <= 1e9))
+      throw std::runtime_error(fmt::format("'until' needs a time after now and at most 1e9 s, got {}", value));
+    control_.until = sim::from_seconds(value);
+    control_.set_paused(false);
+    return place();
+  }
+  return change(command, value, text);
+}
+
+std::string ResimulatedRun::branch(const std::string& programs_text) {
+  if (branched_) throw std::runtime_error(fmt::format("this is branch {} already", control_.branch));
+  if (catch_up_) throw std::runtime_error("the run is going back: wait until it is there");
+  if (!programs_text.empty() && programs_text != "recorded" && programs_text != "restarted")
+    throw std::runtime_error("'branch' takes 'recorded', 'restarted' or nothing, got '" +
+                             sim::shortened(programs_text) + "'");
+  if (programs_text == "restarted" && !programs_)
+    throw std::runtime_error("no programs can be started: the command needs --launch, and the world `processes`");
+  const std::int64_t step = world().step_number();
+  restarted_ = programs_ && programs_text != "recorded";
+  if (restarted_) {
+    try {
+      start_programs(step);
+    } catch (const RunError&) {
+      // The record is shown from its start again.
+      restarted_ = false;
+      replayed_.restore_inputs();
+      load(first_);
+      control_.set_paused(true);
+      page_.jump();
+      throw;
+    }
+  }
+  branched_ = true;
+  page_.start(world(), std::nullopt, {"branched", programs()});
+  if (!restarted_) start_branch();
+  return place() + "; programs: " + programs();
+}
+
+/// Starts the programs at the first step of the record: they follow it up to this step, and then act.
+void ResimulatedRun::start_programs(std::int64_t step) {
+  programs_->stop();
+  load(first_);
+  view_.discard();
+  replayed_.drop_inputs_from(step);
+  programs_->start();
+  catch_up_ = step;
+}
+
+void ResimulatedRun::start_branch() {
+  ++control_.branch;
+  view_.set_branch(control_.branch);
+  page_.moved(world(), control_, true, programs());
+}
+
+std::string ResimulatedRun::rewind(double seconds) {
+  if (!(seconds > 0 && seconds <= 1e9))
+    throw std::runtime_error(fmt::format("'rewind' needs a value above 0, in seconds, got {}", seconds));
+  const std::int64_t now = world().step_number();
+  const double steps = seconds * 1e6 / static_cast<double>(world().step_time().count());
+  const std::int64_t target = std::max<std::int64_t>(now - std::llround(steps), log_.begin_step());
+  if (target == now) throw std::runtime_error("already there: nothing to rewind");
+  faulty_ = false;
+  control_.clear_until();
+  control_.set_paused(true);
+  if (restarted_) {
+    snapshots_.discard_after(log_.begin_step() - 1);
+    try {
+      start_programs(target);
+    } catch (const RunError& error) {
+      fail(error.what());
+      throw;
+    }
+    return place();
+  }
+  // The last state before it, then the steps from there, with the same inputs.
+  const auto base = snapshots_.newest_until(target);
+  load(base ? snapshots_.get(*base) : first_);
+  if (branched_) {
+    snapshots_.discard_after(target);
+    changes_.erase(changes_.lower_bound(target), changes_.end());
+  }
+  view_.discard();
+  catch_up_ = target;
+  if (world().step_number() >= target) arrive();
+  return place();
+}
+
+/// Ends a way back: a branch is left for another one, a record is the same.
+void ResimulatedRun::arrive() {
+  catch_up_.reset();
+  if (!branched_) return page_.jump();
+  if (restarted_) programs_->set_acting(true);
+  start_branch();
+}
+
+std::string ResimulatedRun::change(const std::string& command, double value, const std::string& text) {
+  if (!branched_)
+    throw std::runtime_error("'" + command + "': this is a record, which cannot be changed: branch here first");
+  if (command != "do" && command != "spawn" && command != "remove")
+    throw std::runtime_error("'" + command + "' is not possible in a record that is run again");
+  shoal::sim_control_request_t request{};
+  request.client = "live page";
+  request.command = command;
+  request.value = value;
+  request.text = text;
+  if (catch_up_) throw std::runtime_error("'" + command + "': the run is going back: wait until it is there");
+  const std::string reply = replayed_.request(request);
+  if (!restarted_) changes_.emplace(world().step_number(), request);
+  return reply;
+}
+
+}  // namespace tools
