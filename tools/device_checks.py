@@ -26,7 +26,7 @@ input. They are in `tests/devices`. Beside these, `EveryDevice` runs each device
 saves and restores it; `EveryActuator`, `SensorFault`, `ActuatorFault`, `ActuatorLatency`, `SensorLatency`, `Watchdog`,
 `Power`, `Jitter` and `Dropout` check the layer around all devices.
 
-| device | closed form and behaviour | statistics | bad input |
+| device | closed form and behavior | statistics | bad input |
 |---|---|---|---|
 """
 

@@ -10,7 +10,7 @@ import     takes any raster that GDAL reads (GeoTIFF, NetCDF, gridded XYZ, S-102
            gdal-bin.  The middle of the grid is the world's origin at LAT,LON (degrees); x is east, y north, on the plane
            that touches the Earth there (azimuthal equidistant projection); the Earth's curvature, 8 cm at 1 km, is left
            out.  NetCDF with several variables: NETCDF:"FILE":VARIABLE.  Points that lie scattered: gdal_grid first.
-  --size X,Y             metres to the east and to the north, each a whole number of cells
+  --size X,Y             meters to the east and to the north, each a whole number of cells
   --cell M               distance of two heights
   --depth-positive-down  the file has depths; without it, heights (negative under water)
   --offset M             added to the heights, such as of a chart datum under the still surface
@@ -52,7 +52,7 @@ def run(command):
 
 
 def write_grid(path, rows, cell_m, left_m, bottom_m):
-    """`rows` from north to south; left and bottom: the centre of the south-west cell."""
+    """`rows` from north to south; left and bottom: the center of the south-west cell."""
     with open(path, "w") as out:
         out.write(f"ncols {len(rows[0])}\nnrows {len(rows)}\nxllcenter {left_m:g}\nyllcenter {bottom_m:g}\n"
                   f"cellsize {cell_m:g}\nNODATA_value {NODATA}\n")
@@ -90,7 +90,7 @@ def import_raster(options):
     if not options.file.startswith(("NETCDF:", "HDF5:")) and not os.path.exists(options.file):
         die(f"there is no file '{options.file}'")
     here = f"+proj=aeqd +lat_0={latitude} +lon_0={longitude} +x_0=0 +y_0=0 +datum=WGS84 +units=m"
-    edge = options.cell / 2  # heights of GDAL's cells are at their centres
+    edge = options.cell / 2  # heights of GDAL's cells are at their centers
     with tempfile.TemporaryDirectory() as folder:
         band, warped, text = (os.path.join(folder, name) for name in ("band.vrt", "warped.tif", "grid.asc"))
         run(["gdal_translate", "-q", "-of", "VRT", "-b", str(options.band), options.file, band])

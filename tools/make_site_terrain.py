@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes worlds/terrain/site_2km.png: 2 km x 2 km of rolling ground with a river valley and a levelled yard.
+"""Writes worlds/terrain/site_2km.png: 2 km x 2 km of rolling ground with a river valley and a leveled yard.
 
 usage: make_site_terrain.py FILE.png
 
@@ -30,7 +30,7 @@ def height_m(lattice, x, y):
     # The river meanders along x; its valley is 150 m wide.
     away = y + 500 - 120 * math.sin(x / 260)
     height -= 25 * math.exp(-((away / 75) ** 2))
-    # A yard of 120 m around the origin is levelled to 40 m, with banks of 100 m.
+    # A yard of 120 m around the origin is leveled to 40 m, with banks of 100 m.
     bank = min(1.0, max(0.0, (math.hypot(x, y) - 60) / 100))
     bank = bank * bank * (3 - 2 * bank)
     return 40 + (height - 40) * bank

@@ -20,7 +20,7 @@ HEAD = """# Python package
 Made by `tools/python_reference.py` from the docstrings of the package `shoal`; `help(shoal)` shows the same.
 [Lesson 8](../start/8_python.md) is the way in.
 
-Distances are in metres, angles in radians, times in seconds, unless a name says otherwise; `utime` is in microseconds.
+Distances are in meters, angles in radians, times in seconds, unless a name says otherwise; `utime` is in microseconds.
 World axes are east, north, up; vehicle axes are forward, left, up.
 
 Everything that Shoal refuses raises `shoal.Error` (a `RuntimeError` and a `ValueError`), with the text that the program

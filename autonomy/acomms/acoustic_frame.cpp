@@ -121,8 +121,8 @@ bool has_good_checksum(std::span<const std::uint8_t> bytes) {
   return in.unsigned_number(2) == checksum(bytes.first(bytes.size() - 2));
 }
 
-std::int64_t centimetres(double metres) {
-  return std::llround(100 * metres);
+std::int64_t centimeters(double meters) {
+  return std::llround(100 * meters);
 }
 
 /// Each length corresponds to one kind.
@@ -153,14 +153,14 @@ std::optional<Bytes> encode(const AcousticState& state) {
   Writer out(kind);
   out.put(state.sender, 1);
   out.put(of_week_ms(state.utime), 4);
-  out.put(centimetres(state.east_m), 4);
-  out.put(centimetres(state.north_m), 4);
-  out.put(std::max<std::int64_t>(0, centimetres(state.depth_m)), 3);
+  out.put(centimeters(state.east_m), 4);
+  out.put(centimeters(state.north_m), 4);
+  out.put(std::max<std::int64_t>(0, centimeters(state.depth_m)), 3);
   // Never zero, because no position is known exactly.
   out.put(std::max<std::int64_t>(1, saturated_up(100 * state.east_std_m)), 2);
   out.put(std::max<std::int64_t>(1, saturated_up(100 * state.north_std_m)), 2);
   out.put(std::llround(127 * state.correlation), 1);
-  out.put(std::min<std::int64_t>(centimetres(std::min(state.speed_mps, 1000.0)), 65535), 2);
+  out.put(std::min<std::int64_t>(centimeters(std::min(state.speed_mps, 1000.0)), 65535), 2);
   out.put(std::llround(std::remainder(state.course_rad, 2 * std::numbers::pi) / (2 * std::numbers::pi) * turn), 2);
   if (kind != state_kind) out.put(state.order, 1);
   if (kind == refusing_state_kind) {
@@ -210,10 +210,10 @@ std::optional<Bytes> encode(const AcousticOrder& order) {
   out.put(order.receiver, 1);
   out.put(order.number, 1);
   out.put(of_week_ms(order.utime), 4);
-  out.put(centimetres(order.east_m), 4);
-  out.put(centimetres(order.north_m), 4);
-  out.put(std::max<std::int64_t>(0, centimetres(order.depth_m)), 3);
-  out.put(centimetres(order.speed_mps), 2);
+  out.put(centimeters(order.east_m), 4);
+  out.put(centimeters(order.north_m), 4);
+  out.put(std::max<std::int64_t>(0, centimeters(order.depth_m)), 3);
+  out.put(centimeters(order.speed_mps), 2);
   return out.finish();
 }
 

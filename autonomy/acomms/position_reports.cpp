@@ -37,7 +37,7 @@ void PositionReports::receive(const shoal::modem_received_t& packet) {
   unused_[report.vehicle] = std::move(report);
 }
 
-std::optional<PositionReports::Neighbour> PositionReports::take(const std::string& vehicle, std::int64_t utime) {
+std::optional<PositionReports::Neighbor> PositionReports::take(const std::string& vehicle, std::int64_t utime) {
   const auto found = unused_.find(vehicle);
   if (found == unused_.end()) return std::nullopt;
   const shoal::position_report_t report = found->second;
@@ -47,7 +47,7 @@ std::optional<PositionReports::Neighbour> PositionReports::take(const std::strin
   if (age_s > oldest_s) return std::nullopt;
   const Vector2d p_W(report.position_m[0], report.position_m[1]);
   const Vector2d v_W(report.velocity_mps[0], report.velocity_mps[1]);
-  return Neighbour{p_W + v_W * age_s, std::hypot(report.position_std_m, speed_change_std_mps * age_s)};
+  return Neighbor{p_W + v_W * age_s, std::hypot(report.position_std_m, speed_change_std_mps * age_s)};
 }
 
 }  // namespace autonomy

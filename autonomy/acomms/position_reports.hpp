@@ -25,7 +25,7 @@ class PositionReports {
   static constexpr double oldest_s = 3.0;
   static constexpr double max_speed_mps = 10.0;
 
-  struct Neighbour {
+  struct Neighbor {
     Vector2d p_W;
     double std_m;
   };
@@ -35,7 +35,7 @@ class PositionReports {
   /// Returns the position of a rover at `utime` by its last report, and marks that report as used: its error is the
   /// same at every detection and must not be counted repeatedly.  Nothing when there is no unused report or it is too
   /// old.
-  std::optional<Neighbour> take(const std::string& vehicle, std::int64_t utime);
+  std::optional<Neighbor> take(const std::string& vehicle, std::int64_t utime);
 
  private:
   std::map<std::string, shoal::position_report_t, std::less<>> unused_;

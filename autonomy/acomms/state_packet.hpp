@@ -6,7 +6,7 @@
 #include <string>
 
 #include "autonomy/acomms/acoustic_frame.hpp"
-#include "autonomy/behaviours/helm_behaviour.hpp"
+#include "autonomy/behaviors/helm_behavior.hpp"
 #include "shoal/acoustic_received_t.hpp"
 #include "shoal/modem_received_t.hpp"
 #include "shoal/modem_send_t.hpp"

@@ -29,7 +29,7 @@ void Ekf::predict(const Increment& move) {
   Eigen::Matrix3d Q_B = Eigen::Matrix3d::Zero();
   Q_B.diagonal() << squared(params_.along_std_m) * distance_m, squared(params_.across_std_m) * distance_m,
       squared(params_.yaw_per_turn_std_rad) * std::abs(move.turn_rad) +
-          squared(params_.yaw_per_metre_std_rad) * distance_m;
+          squared(params_.yaw_per_meter_std_rad) * distance_m;
 
   pose_.p_W += moved_W;
   pose_.yaw_rad = sim::wrap_angle(pose_.yaw_rad + move.turn_rad);
@@ -42,7 +42,7 @@ bool Ekf::update_position(const Vector2d& p_W, double std_m) {
   return update(p_W - pose_.p_W, H, squared(std_m) * Eigen::Matrix2d::Identity());
 }
 
-bool Ekf::update_relative(const Vector2d& p_BN_B, double seen_std_m, const Vector2d& p_WN_W, double neighbour_std_m) {
+bool Ekf::update_relative(const Vector2d& p_BN_B, double seen_std_m, const Vector2d& p_WN_W, double neighbor_std_m) {
   const Vector2d d_W = p_WN_W - pose_.p_W;
   const Vector2d expected_B = turned(d_W, -pose_.yaw_rad);
   const double c = std::cos(pose_.yaw_rad);
@@ -51,7 +51,7 @@ bool Ekf::update_relative(const Vector2d& p_BN_B, double seen_std_m, const Vecto
   Jacobian H;
   H << -c, -s, expected_B.y(), s, -c, -expected_B.x();
   // Both errors are isotropic, so the rotation between the frames does not matter.
-  const double variance = squared(seen_std_m) + squared(neighbour_std_m);
+  const double variance = squared(seen_std_m) + squared(neighbor_std_m);
   return update(p_BN_B - expected_B, H, variance * Eigen::Matrix2d::Identity());
 }
 

@@ -16,7 +16,7 @@ class Ekf {
     double along_std_m = 0.03;             ///< of the distance after 1 m
     double across_std_m = 0.01;            ///< sideways slip after 1 m
     double yaw_per_turn_std_rad = 0.04;    ///< after a turn of 1 rad
-    double yaw_per_metre_std_rad = 0.015;  ///< after 1 m
+    double yaw_per_meter_std_rad = 0.015;  ///< after 1 m
     double gate = 13.82;                   ///< squared Mahalanobis distance: 99.9 % of chi-square with 2 degrees
     int max_refusals = 10;                 ///< consecutive ones, before the estimate itself is considered wrong
   };
@@ -29,7 +29,7 @@ class Ekf {
   /// Updates with a position in the world.  Returns false, without a change of the estimate, when the gate rejects it.
   bool update_position(const Vector2d& p_W, double std_m);
   /// Updates with the detection of another rover at `p_BN_B`, in the body frame, which reports its position `p_WN_W`.
-  bool update_relative(const Vector2d& p_BN_B, double seen_std_m, const Vector2d& p_WN_W, double neighbour_std_m);
+  bool update_relative(const Vector2d& p_BN_B, double seen_std_m, const Vector2d& p_WN_W, double neighbor_std_m);
 
   const Pose2& pose() const { return pose_; }
   const Eigen::Matrix3d& covariance() const { return P_; }

@@ -114,7 +114,7 @@ Eigen::Matrix<double, 2, MarineEkf::max_states> MarineEkf::earlier_position_jaco
 MarineEkf::Outcome MarineEkf::update_position(std::int64_t utime, const Vector2d& p_W, double std_m) {
   const auto displacement_W = distance_since(utime);
   if (!displacement_W) return Outcome::too_old;
-  // Innovation and its normalised square.
+  // Innovation and its normalized square.
   const Vector2d innovation = p_W - (position() - corrected(*displacement_W));
   const Eigen::Matrix<double, 2, max_states> H = earlier_position_jacobian(*displacement_W);
   const Eigen::Matrix2d R = squared(std_m) * Eigen::Matrix2d::Identity();

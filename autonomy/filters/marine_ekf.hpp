@@ -44,7 +44,7 @@ class MarineEkf {
     double speed_scale_walk = 1e-5;
     double range_bias_walk_m = 0.01;
     double range_drift_walk_mps = 1e-5;
-    /// With two states the biases are modelled as noise that changes at this interval.
+    /// With two states the biases are modeled as noise that changes at this interval.
     double bias_as_noise_s = 60;
 
     double range_gate = 10.83;     ///< squared innovation over its variance: 99.9 % of chi-square with 1 degree
@@ -103,7 +103,7 @@ class MarineEkf {
   int inflated() const { return inflated_; }
 
  private:
-  /// Distance travelled by the measured velocity, since the start.
+  /// Distance traveled by the measured velocity, since the start.
   struct Mark {
     std::int64_t utime;
     Vector2d displacement_W;

@@ -37,7 +37,7 @@ class WallEkf {
     double heading_noise_radprtHz = 1e-3;  ///< drift of the gyro
     double current_noise_mpsprtHz = 5e-3;
     double current_std_mps = 0.3;  ///< at the start
-    double gate = 10.83;           ///< of a squared normalised innovation: 99.9 % of one degree of freedom
+    double gate = 10.83;           ///< of a squared normalized innovation: 99.9 % of one degree of freedom
   };
   using State = Eigen::Matrix<double, 5, 1>;
   using Covariance = Eigen::Matrix<double, 5, 5>;

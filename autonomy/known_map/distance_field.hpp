@@ -34,7 +34,7 @@ inline constexpr int occupied_percent = 65, free_percent = 20;
 /// million cells.
 GridFrame frame_of(const shoal::occupancy_grid_t& map);
 
-/// Returns for each cell the distance of its centre to that of the nearest marked one, m; infinity without any (exact
+/// Returns for each cell the distance of its center to that of the nearest marked one, m; infinity without any (exact
 /// Euclidean distance transform, Felzenszwalb and Huttenlocher 2012).
 std::vector<float> distances_m(const GridFrame& frame, const std::vector<char>& marked);
 

@@ -136,7 +136,7 @@ std::optional<shoal::estimate_t> Localizer::step() {
   const std::size_t every =
       std::max<std::size_t>(1, (beams.points_B.size() + params_.max_beams - 1) / params_.max_beams);
   for (std::size_t i = 0; i < beams.points_B.size(); i += every) points_B_.push_back(beams.points_B[i]);
-  // Further scans of one place have the errors of the first: they would only make the filter too sure.
+  // Further scans of one place have the errors of the first: they would only make the filter overconfident.
   const std::optional<double> here = fit();
   if (scans_ == 1 && !params_.start)
     for (std::size_t i = 0; const Pose2& pose : poses_of_scan(particles_.size())) particles_[i++].pose = pose;

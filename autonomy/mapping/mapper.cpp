@@ -140,7 +140,7 @@ void Mapper::search(const Beams& beams, const Increment& by) {
 }
 
 void Mapper::survey(const Beams& beams) {
-  constexpr double near_m = 6, near_rad = 1.2, metres_per_rad = 2;
+  constexpr double near_m = 6, near_rad = 1.2, meters_per_rad = 2;
   const std::size_t last = surveyed_.size();
   graph_.add_pose(pose_);
   surveyed_.push_back(
@@ -165,7 +165,7 @@ void Mapper::survey(const Beams& beams) {
   for (std::size_t i = 0; i + 1 < last; ++i) {
     const Pose2 away = seen_from(graph_.poses()[i], pose_);
     if (away.p_W.norm() < near_m && std::abs(away.yaw_rad) < near_rad)
-      close.emplace_back(away.p_W.norm() + metres_per_rad * std::abs(away.yaw_rad), i);
+      close.emplace_back(away.p_W.norm() + meters_per_rad * std::abs(away.yaw_rad), i);
   }
   std::sort(close.begin(), close.end());
   struct Taken {

@@ -18,14 +18,14 @@
 
 namespace autonomy {
 
-/// Simultaneous localisation and mapping by a planar lidar and odometry: a pure function of the messages in their
+/// Simultaneous localization and mapping by a planar lidar and odometry: a pure function of the messages in their
 /// order, independent of clock and bus.  Its copy is its whole state.
 ///
 ///   - survey: the first `survey_scans` scans are poses of a graph.  Each is aligned with those near it, so that loops
 ///   close, and the map is drawn again when the poses have moved.  The first pose is that of the start: its scan, whose
 ///   errors would be those of the whole map, is the mean of all until the vehicle leaves.
 ///   - track: each scan is matched to the map near the pose that odometry predicts, and then added to the map.
-///   - lost: several scans in a row do not fit to the map, as after the vehicle was carried or left the mapped area.
+///   - lost: several scans in a row do not match the map, as after the vehicle was carried or left the mapped area.
 ///   The whole map is searched for its place, and nothing is added to it.
 class Mapper {
  public:

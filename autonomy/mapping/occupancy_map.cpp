@@ -103,11 +103,11 @@ void OccupancyMap::visit_passed(const Vector2d& sensor_W, const Vector2d& end_W,
     each[axis] = direction[axis] != 0 ? 1 / std::abs(direction[axis]) : never;
     next[axis] = direction[axis] != 0 ? (border - from[axis]) / direction[axis] : never;
   }
-  for (double travelled = 0; travelled < length;) {
+  for (double traveled = 0; traveled < length;) {
     if (at[0] < 0 || at[1] < 0 || at[0] >= columns_ || at[1] >= rows_) return;
     visit(at[0], at[1]);
     const int axis = next[0] < next[1] ? 0 : 1;
-    travelled = next[axis];
+    traveled = next[axis];
     next[axis] += each[axis];
     at[axis] += step[axis];
   }
@@ -128,14 +128,14 @@ void OccupancyMap::insert(const Vector2d& sensor_W, const std::vector<Vector2d>&
   };
   changed_.clear();
   ends_.clear();
-  // A cell in which a beam ends is not passed by its neighbours, which graze the surface.  A beam that ends beside an
+  // A cell in which a beam ends is not passed by its neighbors, which graze the surface.  A beam that ends beside an
   // occupied cell has met the same surface, first one that is kept: otherwise surfaces would become thick, and move
   // with the errors of poses.
   const auto add_end = [&](const Vector2d& end_W) {
     int column = column_of(end_W.x()), row = row_of(end_W.y());
     if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return;
-    if (!is_anchor(column, row) && !use_neighbour(column, row, &OccupancyMap::is_anchor) && !is_occupied(column, row))
-      use_neighbour(column, row, &OccupancyMap::is_occupied);
+    if (!is_anchor(column, row) && !use_neighbor(column, row, &OccupancyMap::is_anchor) && !is_occupied(column, row))
+      use_neighbor(column, row, &OccupancyMap::is_occupied);
     CellState& cell = cell_at(column, row);
     if (cell.is_end) return;
     cell.is_end = true;
@@ -181,10 +181,10 @@ bool OccupancyMap::is_anchor(int column, int row) const {
   return tile != nullptr && tile->anchor[cell_of(column, row)] == 255;
 }
 
-bool OccupancyMap::use_neighbour(int& column, int& row, bool (OccupancyMap::*is_surface)(int, int) const) const {
+bool OccupancyMap::use_neighbor(int& column, int& row, bool (OccupancyMap::*is_surface)(int, int) const) const {
   // Those beside it, then those across its corners.
-  static constexpr int neighbours[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}};
-  for (const auto& [right, up] : neighbours) {
+  static constexpr int neighbors[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {1, -1}, {-1, 1}, {-1, -1}};
+  for (const auto& [right, up] : neighbors) {
     if (!(this->*is_surface)(column + right, row + up)) continue;
     column += right;
     row += up;

@@ -33,7 +33,7 @@ class OccupancyMap {
     double hit = 0.85;          ///< log-odds that a beam that ends in a cell adds
     double miss = 0.4;          ///< log-odds that a beam that passes a cell takes away
     double max_log_odds = 3.5;  ///< limit with `forgets`
-    double surface_m = 0.5;     ///< neighbouring beams that end nearer to each other have met one surface
+    double surface_m = 0.5;     ///< neighboring beams that end nearer to each other have met one surface
     double field_std_m = 0.06;  ///< standard deviation of the likelihood field
   };
   static constexpr int unknown_percent = -1;
@@ -48,9 +48,9 @@ class OccupancyMap {
   /// Returns the probability of occupancy at a time, 0 to 100; -1: never observed.
   int percent(int column, int row, double now_s) const;
   /// Returns the likelihood field at a point, 0 to 1: a Gaussian of the distance to the nearest occupied cell;
-  /// interpolated between the centres of cells.
+  /// interpolated between the centers of cells.
   double field(const Vector2d& p_W) const;
-  /// The same at the nearest centre, 0 to 255.
+  /// The same at the nearest center, 0 to 255.
   std::uint8_t field_at(int column, int row) const {
     if (column < 0 || row < 0 || column >= columns_ || row >= rows_) return 0;
     const Tile* tile = tile_of(column, row).get();
@@ -103,8 +103,8 @@ class OccupancyMap {
   void visit_passed(const Vector2d& sensor_W, const Vector2d& end_W, double less_m, Visit visit) const;
   /// Whether the cell was occupied when the field was kept.
   bool is_anchor(int column, int row) const;
-  /// Replaces a cell by a neighbour that is part of a surface.  Returns whether there is one.
-  bool use_neighbour(int& column, int& row, bool (OccupancyMap::*is_surface)(int, int) const) const;
+  /// Replaces a cell by a neighbor that is part of a surface.  Returns whether there is one.
+  bool use_neighbor(int& column, int& row, bool (OccupancyMap::*is_surface)(int, int) const) const;
   /// Computes the field again around the cells whose state has changed.
   void update_field();
 

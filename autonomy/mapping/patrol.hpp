@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "autonomy/behaviours/obstacle_avoidance.hpp"
-#include "autonomy/behaviours/waypoint_follower.hpp"
+#include "autonomy/behaviors/obstacle_avoidance.hpp"
+#include "autonomy/behaviors/waypoint_follower.hpp"
 #include "autonomy/mapping/path.hpp"
 #include "shoal/estimate_t.hpp"
 #include "shoal/odometry_t.hpp"

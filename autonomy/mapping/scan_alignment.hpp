@@ -9,14 +9,14 @@
 
 namespace autonomy {
 
-/// Points of a scan in the order of its beams, in the frame of the vehicle, with the line through their neighbours.
+/// Points of a scan in the order of its beams, in the frame of the vehicle, with the line through their neighbors.
 class Outline {
  public:
   Outline() = default;
   explicit Outline(std::vector<Vector2d> points_B);
 
   struct Line {
-    Vector2d normal_B = Vector2d::Zero();  ///< zero: its neighbours are not on one line with it
+    Vector2d normal_B = Vector2d::Zero();  ///< zero: its neighbors are not on one line with it
     double half_length_m = 0;              ///< to the middle of the way to the next point
   };
   const std::vector<Vector2d>& points_B() const { return points_B_; }

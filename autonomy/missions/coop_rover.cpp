@@ -78,11 +78,11 @@ void CoopRover::receive_sightings(const shoal::swarm_position_t& seen) {
   for (std::size_t i = 0; i < seen.vehicle.size(); ++i) {
     const Vector2d seen_B(seen.relative_m[i][0], seen.relative_m[i][1]);
     if (!seen_B.allFinite()) continue;
-    const auto neighbour = reports_.take(seen.vehicle[i], seen.utime);
-    if (!neighbour) continue;
-    // As seen at the last odometry: at 20 m a rotation of 3 degrees in the meantime is a metre.
+    const auto neighbor = reports_.take(seen.vehicle[i], seen.utime);
+    if (!neighbor) continue;
+    // As seen at the last odometry: at 20 m a rotation of 3 degrees in the meantime is a meter.
     const Vector2d p_BN_B = turned(seen_B, moved.turn_rad) + Vector2d(moved.forward_m, 0);
-    filter_.update_relative(p_BN_B, params_.seen_std_m, neighbour->p_W, neighbour->std_m);
+    filter_.update_relative(p_BN_B, params_.seen_std_m, neighbor->p_W, neighbor->std_m);
   }
 }
 

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "autonomy/acomms/position_reports.hpp"
-#include "autonomy/behaviours/avoid_behaviour.hpp"
-#include "autonomy/behaviours/obstacle_avoidance.hpp"
-#include "autonomy/behaviours/waypoint_follower.hpp"
+#include "autonomy/behaviors/avoid_behavior.hpp"
+#include "autonomy/behaviors/obstacle_avoidance.hpp"
+#include "autonomy/behaviors/waypoint_follower.hpp"
 #include "autonomy/filters/ekf.hpp"
 #include "autonomy/filters/odometer.hpp"
 #include "shoal/gps_data_t.hpp"
@@ -21,7 +21,7 @@
 namespace autonomy {
 
 /// Autonomy of one rover of the cooperative experiment.  A rover with GPS reports its position to the others; a rover
-/// without GPS localises itself by odometry and detections of those that report.  A pure function of the messages in
+/// without GPS localizes itself by odometry and detections of those that report.  A pure function of the messages in
 /// their order, independent of clock and bus.
 class CoopRover {
  public:

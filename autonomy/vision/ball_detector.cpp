@@ -61,7 +61,7 @@ std::optional<BallSighting> BallDetector::detect(const shoal::image_t& image) {
   check(image);
   const int width = image.width, height = image.height;
 
-  // Pixels with the colour of the ball.
+  // Pixels with the color of the ball.
   mask_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0);
   for (int row = 0; row < height; ++row) {
     const std::uint8_t* pixel = image.data.data() + std::ptrdiff_t{row} * image.row_stride;

@@ -23,8 +23,7 @@ void PollSet::add(int fd, void* tag) {
   epoll_event event{};
   event.events = EPOLLIN | EPOLLEXCLUSIVE;
   event.data.ptr = tag;
-  if (epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event) != 0)
-    throw BusError("the system provides no epoll, which the bus needs to wait for messages");
+  if (epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event) != 0) throw BusError("epoll_create1 failed; the bus requires epoll");
 }
 
 void PollSet::remove(int fd) {

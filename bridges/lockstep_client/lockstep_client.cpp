@@ -43,7 +43,7 @@ std::optional<M> try_decode(std::span<const std::byte> payload) {
   }
 }
 
-/// Returns a new random number for each start, so that replies to an earlier instance are recognised as stale.
+/// Returns a new random number for each start, so that replies to an earlier instance are recognized as stale.
 std::int64_t random_session() {
   std::random_device device;
   const std::uint64_t high = device();

@@ -19,7 +19,7 @@ inline constexpr sim::ChoiceWords<AutopilotMode> autopilot_mode_words{{"off", Au
                                                                       {"station", AutopilotMode::station},
                                                                       {"circle", AutopilotMode::circle}};
 
-/// Behaviour after the last waypoint.
+/// Behavior after the last waypoint.
 enum class AtEnd { station, stop, hold, circle };
 
 /// Section `hold:`, setpoints at the start; unset: the initial values.

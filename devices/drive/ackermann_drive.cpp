@@ -16,7 +16,7 @@ namespace devices {
 
 namespace {
 
-constexpr const char* turns_inside_text = "at 'max_steering_deg' the centre of turn must lie outside the track";
+constexpr const char* turns_inside_text = "at 'max_steering_deg' the center of turn must lie outside the track";
 
 bool turns_inside(double track_m, double wheelbase_m, double max_steering_rad) {
   return track_m / 2 * std::tan(max_steering_rad) >= wheelbase_m;
@@ -80,7 +80,7 @@ void AckermannDrive::take_lengths(const sim::DeviceContext& context) {
   const std::optional<double> wheelbase_m = wheelbase_m_of(vehicle, steered);
   const std::optional<double> radius_m = wheel_radius_m_of(vehicle, params_.drive_joints);
   check_length(context, {"track_m", params_.track_m, track_m}, {},
-               "the axes of its front wheels do not meet in one centre of turn", as_it_is);
+               "the axes of its front wheels do not meet in one center of turn", as_it_is);
   check_length(context, {"wheelbase_m", params_.wheelbase_m, wheelbase_m}, {}, "it turns {} times as fast as commanded",
                as_it_is);
   check_length(context, {"wheel_radius_m", params_.wheel_radius_m, radius_m}, {},

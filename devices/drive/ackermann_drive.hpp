@@ -11,7 +11,7 @@
 namespace devices {
 
 /// Car-like drive: two steered front wheels and driven wheels, as on a car.  All wheels are perpendicular to the lines
-/// to one turning centre on the line of the rear axle: for the steering angle d of a virtual wheel in the middle of the
+/// to one turning center on the line of the rear axle: for the steering angle d of a virtual wheel in the middle of the
 /// front axle, wheelbase L and track t, tan d_left = L tan d / (L - t/2 tan d), with + for the right wheel (Rajamani,
 /// Vehicle Dynamics and Control, 2nd ed., 2012).
 class AckermannDrive final : public sim::Actuator {

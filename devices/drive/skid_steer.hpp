@@ -7,7 +7,7 @@ namespace devices {
 
 /// Skid-steer drive: wheels on both sides without steering, which slip sideways in a turn.  The vehicle then turns
 /// slower than expected from its geometric track; `track_m` is the effective, wider track (Mandow et al., Experimental
-/// kinematics for wheeled skid-steer mobile robots, IROS 2007: the distance between the instantaneous centres of
+/// kinematics for wheeled skid-steer mobile robots, IROS 2007: the distance between the instantaneous centers of
 /// rotation of the two sides).
 class SkidSteer final : public TwoSidedDrive {
  public:

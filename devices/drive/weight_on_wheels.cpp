@@ -139,7 +139,7 @@ void warn_of_shared_weight(const sim::DeviceContext& context, const std::vector<
       context.config.place, "vehicle '" + context.vehicle.name() + "': device '" + context.config.name + "'",
       "how much weight its driven wheels carry is undetermined: " + others + " stand as low as they (" +
           std::to_string(supports->size()) +
-          " points of one rigid vehicle), and may take it all; raise one of them by a millimetre");
+          " points of one rigid vehicle), and may take it all; raise one of them by a millimeter");
 }
 
 }  // namespace devices

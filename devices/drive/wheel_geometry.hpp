@@ -19,7 +19,7 @@ namespace devices {
 /// Geometry of a wheel from the vehicle file, in the initial configuration and the vehicle frame.
 struct WheelGeometry {
   const sim::BodyConfig* body = nullptr;             ///< rotating body; null: neither body of the joint is round
-  sim::Vector3d center_V_m = sim::Vector3d::Zero();  ///< centre of its largest round part, else the anchor of the joint
+  sim::Vector3d center_V_m = sim::Vector3d::Zero();  ///< center of its largest round part, else the anchor of the joint
   sim::Vector3d axis_V = sim::Vector3d::UnitY();     ///< axis of rotation, of unit length
   std::optional<double> radius_m;                    ///< radius of that part
   /// Returns whether it rolls on the ground: a round part that rotates about a nearly horizontal axis.
@@ -34,7 +34,7 @@ double track_m_of(const sim::VehicleConfig& vehicle, const std::vector<std::stri
                   const std::vector<std::string>& right_joints);
 
 /// Returns the effective track of a skid-steer vehicle with equal loads on its wheels and Coulomb friction: 2 (b + a^2
-/// / b) with wheels at (+-a, +-b) from their centre, for which the friction of the slip velocities (b w - v, a w) has
+/// / b) with wheels at (+-a, +-b) from their center, for which the friction of the slip velocities (b w - v, a w) has
 /// no moment.
 double scrubbing_track_m_of(const sim::VehicleConfig& vehicle, const std::vector<std::string>& left_joints,
                             const std::vector<std::string>& right_joints);

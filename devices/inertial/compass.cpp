@@ -36,7 +36,7 @@ void Compass::Params::read(sim::ParamReader& in) {
   in.read_deg("declination_correction_deg", declination_correction_rad, sim::between(-180, 180),
               "configured declination, added to the heading for heading_true; 0: not configured");
   in.read("hard_iron_uT", hard_iron_uT, sim::any_number(),
-          "field of magnetised parts that move with the sensor, in its axes");
+          "field of magnetized parts that move with the sensor, in its axes");
   in.read("soft_iron", soft_iron, sim::any_number(), "3x3 matrix on the field, 9 numbers by rows");
   if (!in.describing() && soft_iron.size() != 9) {
     in.error("soft_iron", "'soft_iron' must have 9 numbers, got " + std::to_string(soft_iron.size()));

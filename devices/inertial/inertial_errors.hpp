@@ -19,7 +19,7 @@ struct InertialParams {
   double scale = 0;             ///< standard deviation of the scale error of each axis, drawn once
   double misalignment_rad = 0;  ///< standard deviation of each cross-axis element, drawn once
   double range = 0;             ///< output limit +-, [u]; 0: unlimited
-  double resolution = 0;        ///< quantisation step of the output, [u]; 0: none
+  double resolution = 0;        ///< quantization step of the output, [u]; 0: none
 };
 
 /// Allan deviation of a first-order Gauss-Markov process of standard deviation 1 over correlation times `tau / T_c`:
@@ -33,7 +33,7 @@ double gauss_markov_allan_deviation(double correlation_times);
 inline constexpr double gauss_markov_allan_peak = 0.61737;
 inline constexpr double gauss_markov_allan_peak_at = 1.8926;  ///< correlation times
 
-/// Error model of a triad: output = (I + M) truth + offset + drift + white noise, limited and quantised.  The diagonal
+/// Error model of a triad: output = (I + M) truth + offset + drift + white noise, limited and quantized.  The diagonal
 /// of M holds scale errors, the other elements misalignments of the axes (first order; Titterton and Weston, Strapdown
 /// Inertial Navigation Technology, 2nd ed., 2004).
 class InertialErrors {

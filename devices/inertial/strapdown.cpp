@@ -47,7 +47,7 @@ void Strapdown::measure(const sim::SenseContext& context) {
   if (started_ && context.dt_s > 0) {
     if (q_WS.dot(q_WS_) < 0) q_WS.coeffs() = -q_WS.coeffs();  // same rotation, with the sign closest to the last one
     w_WS_S_ = rotation_vector(q_WS_.conjugate() * q_WS) / context.dt_s;
-    // The normalised sum of two unit quaternions is the rotation half-way between them.
+    // The normalized sum of two unit quaternions is the rotation half-way between them.
     const sim::Quaterniond q_half(sim::Quaterniond(q_WS_.coeffs() + q_WS.coeffs()).normalized());
     f_S_ = q_half.conjugate() * sim::Vector3d((context.v_WS_W - v_WS_W_) / context.dt_s - gravity_W_mps2);
   } else {

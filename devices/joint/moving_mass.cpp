@@ -15,7 +15,7 @@ void MovingMass::Params::read(sim::ParamReader& in) {
   in.read("max_m", max_m, sim::between(0, 1000), "slide: maximum forward travel");
   in.read("min_m", min_m, sim::between(-1000, 0), "slide: maximum backward travel; unset: -max_m");
   in.read("rate_mps", rate_mps, sim::above(0), "slide: maximum speed");
-  in.read("radius_m", radius_m, sim::between(0, 1000), "turn: of its centre of mass about the axis");
+  in.read("radius_m", radius_m, sim::between(0, 1000), "turn: of its center of mass about the axis");
   in.read_deg("limit_deg", limit_rad, sim::above_to(0, 180), "turn: maximum angle to each side");
   in.read("rate_degps", rate_degps, sim::above(0), "turn: maximum rate");
   lag.read(in);

@@ -8,7 +8,7 @@
 
 namespace devices {
 
-/// Moving mass inside the vehicle that shifts its centre of mass, such as the battery of a glider.  The inertia of the
+/// Moving mass inside the vehicle that shifts its center of mass, such as the battery of a glider.  The inertia of the
 /// vehicle includes the mass at command 0.
 /// - slide: along x of the device frame D; the command is the displacement in m.  Forward pitches the nose down.
 /// - turn: about x of D, at a radius along -z; the command is an angle in rad.  Positive moves it towards +y, which

@@ -8,7 +8,7 @@
 namespace devices {
 
 /// Force and torque on the body in the device frame, the force at its origin, in water and in air.  Uses: thrusters
-/// modelled by another program, a tow, a push in a test.
+/// modeled by another program, a tow, a push in a test.
 class BodyWrench final : public sim::Actuator {
  public:
   static constexpr const char* meaning = "Force and torque on the body in the device's frame, at its origin.";

@@ -8,7 +8,7 @@
 
 namespace devices {
 
-/// Sail on a boom.  The mast is z of the device frame D, whose origin is the centre of effort; the boom points along -x
+/// Sail on a boom.  The mast is z of the device frame D, whose origin is the center of effort; the boom points along -x
 /// when the sheet is hauled in.  The command is the length of the sheet as the maximum angle of the boom to either
 /// side, rad.  A boom within this angle is aligned with the wind, and the sail has drag only.
 ///

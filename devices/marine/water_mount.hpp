@@ -84,7 +84,7 @@ class WaterMount {
   WaterFlow flow_without_cache() const;
 };
 
-/// Returns the immersed share of a device of the given height whose centre is at `depth_m`: 0 to 1, smooth at both
+/// Returns the immersed share of a device of the given height whose center is at `depth_m`: 0 to 1, smooth at both
 /// ends.
 inline double share_under_water(double depth_m, double height_m) {
   const double share = depth_m / height_m + 0.5;

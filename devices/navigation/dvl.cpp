@@ -142,7 +142,7 @@ void Dvl::measure(const sim::SenseContext& context) {
   solve();
 }
 
-// Mean over three points, at the centres of the thirds of the layer.
+// Mean over three points, at the centers of the thirds of the layer.
 void Dvl::listen_to_water(const sim::Ray& ray_W, const sim::Vector3d& v_WS_W, Beam& beam) const {
   const double cosine = std::cos(params_.beam_angle_rad);
   const double thickness_m = params_.layer_to_m - params_.layer_from_m;

@@ -13,10 +13,10 @@ void Leak::Params::read(sim::ParamReader& in) {
   in.read("rated_depth_m", rated_depth_m, sim::above(0),
           "below this depth it starts to leak permanently; unset: never");
   in.read("leaking", leaking, "whether it leaks; can be changed by `set` in events");
-  in.read("ingress_lps", ingress_lps, sim::above(0), "ingress while it leaks under water, litres per second");
-  in.read("alarm_l", alarm_l, sim::above(0), "volume in the hull at which the probe raises the alarm, litres");
-  in.read("volume_l", volume_l, sim::above(0), "volume of the hull, litres");
-  in.read("water_noise", water_noise, "error of the water in the hull, litres; a fault's bias is a false alarm");
+  in.read("ingress_lps", ingress_lps, sim::above(0), "ingress while it leaks under water, liters per second");
+  in.read("alarm_l", alarm_l, sim::above(0), "volume in the hull at which the probe raises the alarm, liters");
+  in.read("volume_l", volume_l, sim::above(0), "volume of the hull, liters");
+  in.read("water_noise", water_noise, "error of the water in the hull, liters; a fault's bias is a false alarm");
 }
 
 Leak::Leak(const Params& params, const sim::DeviceContext& context) : params_(params), water_noise_(context, params) {}

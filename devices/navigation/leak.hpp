@@ -20,7 +20,7 @@ class Leak final : public sim::Sensor {
     double ingress_lps = 0.05;
     double alarm_l = 0.01;
     double volume_l = 10;
-    sim::NoiseParams water_noise;  ///< litres
+    sim::NoiseParams water_noise;  ///< liters
     void read(sim::ParamReader& in);
   };
 

@@ -9,7 +9,7 @@
 
 namespace devices {
 
-/// Dead reckoning of a differential drive from quantised wheel ticks.  It uses assumed values of wheel radius and
+/// Dead reckoning of a differential drive from quantized wheel ticks.  It uses assumed values of wheel radius and
 /// track, which may be wrong, and ignores slip, so that the error grows as on a real rover.
 class Odometry final : public sim::Sensor {
  public:
@@ -53,7 +53,7 @@ class Odometry final : public sim::Sensor {
   sim::Pose X_W0_;  ///< initial pose of the vehicle
   double truth_theta_rad_ = 0;
   double wheel_rad_[2] = {0, 0};     ///< true angles at the last sample
-  double believed_rad_[2] = {0, 0};  ///< angles with noise, before quantisation
+  double believed_rad_[2] = {0, 0};  ///< angles with noise, before quantization
   Reading reading_;
   Reading reckoned_;
 };

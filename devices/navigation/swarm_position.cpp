@@ -26,7 +26,7 @@ SwarmPosition::SwarmPosition(const Params& params, const sim::DeviceContext& con
 
 bool SwarmPosition::visible(const sim::SenseContext& context, const sim::Vehicle& other) const {
   const sim::Vector3d from_W = context.X_WS.translation();
-  // Use the centre of mass of the base as target, because the frame often lies on the ground.
+  // Use the center of mass of the base as target, because the frame often lies on the ground.
   const sim::Vector3d to_W = other.base().X_WB() * other.base().p_BC();
   const sim::Vector3d d = to_W - from_W;
   const double distance_m = d.norm();

@@ -15,7 +15,7 @@ namespace devices {
 namespace {
 
 /// Converts depth to mm, rounded; 0 without a hit or for values above 65535.
-sim::Image16 millimetres(const sim::FloatImage& depth_m) {
+sim::Image16 millimeters(const sim::FloatImage& depth_m) {
   sim::Image16 image(depth_m.width, depth_m.height, 1);
   for (std::size_t i = 0; i < image.data.size(); ++i) {
     const double mm = 1000.0 * static_cast<double>(depth_m.data[i]);
@@ -71,7 +71,7 @@ void set_depth(shoal::image_t& message, const Camera& camera) {
   if (meters)
     set_raw(message, camera.depth_m(), pixel_format_float_grey32);
   else
-    set_16_bits(message, millimetres(camera.depth_m()), camera.params().encoding == Camera::Encoding::png);
+    set_16_bits(message, millimeters(camera.depth_m()), camera.params().encoding == Camera::Encoding::png);
   add_metadata(message, "unit", meters ? "m" : "mm");
   add_metadata(message, "depth_along", std::string(word_of(Camera::depth_along_words, camera.params().depth_along)));
 }

@@ -19,9 +19,9 @@ constexpr double dark_reflectivity = 0.1;
 }  // namespace
 
 void LaserWeather::read(sim::ParamReader& in) {
-  in.read("extinction_per_m", extinction_per_m, sim::between(0, 10), "share of the power lost per metre, each way");
+  in.read("extinction_per_m", extinction_per_m, sim::between(0, 10), "share of the power lost per meter, each way");
   in.read("false_returns_per_m", false_returns_per_m, sim::between(0, 10),
-          "returns from drops per metre of beam; their ranges are exponential with the mean 1 / this");
+          "returns from drops per meter of beam; their ranges are exponential with the mean 1 / this");
   in.read("drop_intensity", drop_intensity, sim::at_least(0), "intensity of a return from a drop");
 }
 
@@ -34,7 +34,7 @@ void LaserParams::read(sim::ParamReader& in) {
   in.read("range_std_m", range_std_m, sim::at_least(0),
           "standard deviation of the white range noise at zero range ...");
   in.read("range_std_per_m", range_std_per_m, sim::between(0, 1),
-          "... and the increase of its standard deviation per metre");
+          "... and the increase of its standard deviation per meter");
   // Detection and beam.
   in.read_or_word("range_at_10_percent_m", dark_range_m, sim::above(0), {"unlimited"},
                   "largest range at which a surface of reflectivity 0.1 is detected at normal incidence; unlimited: "
@@ -160,7 +160,7 @@ void LaserReceiver::disturb(LaserReturns& returns, double dt_s, sim::Random& ran
     for (double& range_m : ranges_m)
       range_m += fault_.factor * (params_.range_std_m + params_.range_std_per_m * range_m) * random.gaussian();
   noise_.apply(std::span<double>(ranges_m), dt_s, random);
-  // Quantisation and limits.
+  // Quantization and limits.
   for (std::size_t i = 0; i < ranges_m.size(); ++i) {
     if (params_.resolution_m > 0) ranges_m[i] = std::round(ranges_m[i] / params_.resolution_m) * params_.resolution_m;
     std::uint8_t kind = returns.returned[i];

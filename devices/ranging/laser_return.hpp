@@ -83,7 +83,7 @@ class LaserReceiver {
   /// Computes the return of a beam with one ray.
   void receive(const sim::RayHit& hit, const sim::Vector3d& direction_W, LaserReturns& returns, std::size_t i) const;
 
-  /// Applies returns from drops, noise and quantisation in place.  A range that leaves the limits is not an echo any
+  /// Applies returns from drops, noise and quantization in place.  A range that leaves the limits is not an echo any
   /// more.
   void disturb(LaserReturns& returns, double dt_s, sim::Random& random);
   void visit_state(sim::StateArchive& archive) { archive(noise_); }

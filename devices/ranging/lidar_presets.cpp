@@ -11,7 +11,7 @@ using sim::degrees_to_radians;
 
 // "Checked" figures agree with the named manual, data sheet or quotation of one; "not checked" figures are unverified.
 
-/// SICK LMS 200 in its 8 m (millimetre) mode.  Checked, documentation of Player: 180 deg in steps of 1 deg are 181
+/// SICK LMS 200 in its 8 m (millimeter) mode.  Checked, documentation of Player: 180 deg in steps of 1 deg are 181
 /// points, 75 Hz at 500 kbaud and 10 Hz at 38400 baud; 8.192 m in mm, 81.92 m in cm.  Not checked: standard deviation
 /// 5 mm, 10 m at 10 % reflectivity, beam of 4.4 mrad (Ye and Borenstein, ICRA 2002).
 LidarPreset lms200() {
@@ -25,7 +25,7 @@ LidarPreset lms200() {
   return preset;
 }
 
-/// SICK LMS 291 in its 80 m (centimetre) mode.  Checked as above; standard deviation 10 mm at 20 m reported by a user.
+/// SICK LMS 291 in its 80 m (centimeter) mode.  Checked as above; standard deviation 10 mm at 20 m reported by a user.
 /// Not checked: 30 m at 10 % reflectivity, beam of 11 mrad.
 LidarPreset lms291() {
   LidarPreset preset{"lms291", 181, std::numbers::pi, 75, {}};

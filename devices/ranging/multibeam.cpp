@@ -139,7 +139,7 @@ void Multibeam::disturb(double dt_s, sim::Random& random) {
   strength_noise_.apply(std::span<double>(strengths_dB_), dt_s, random);
   for (double& range_m : ranges_m_) range_m *= receiver_.range_scale();
   noise_.apply(std::span<double>(ranges_m_), dt_s, random);
-  // Detection with errors, quantisation and limits.
+  // Detection with errors, quantization and limits.
   for (std::size_t i = 0; i < ranges_m_.size(); ++i) {
     const double level_dB = strengths_dB_[i] - receiver_.gain_dB(true_ranges_m_[i]);
     valid_[i] = valid_[i] && level_dB >= params_.detection.threshold_dB;

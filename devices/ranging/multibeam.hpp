@@ -9,7 +9,8 @@
 
 namespace devices {
 
-/// Multibeam sonar: a swath of beams in the yz-plane of the sensor frame S, centred on -z, from starboard (-y) to port.
+/// Multibeam sonar: a swath of beams in the yz-plane of the sensor frame S, centered on -z, from starboard (-y) to
+/// port.
 class Multibeam final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Multibeam sonar: ranges and strengths over a swath across the track.";

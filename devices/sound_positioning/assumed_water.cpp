@@ -46,7 +46,7 @@ double AssumedWater::distance_m(double own_depth_m, double depth_m, double time_
   constexpr double fastest_mps = 2000;
   const double down_m = depth_m - own_depth_m;
   double near_m = 0, far_m = fastest_mps * time_s;
-  // Bisection, to a tenth of a millimetre within 10 km.
+  // Bisection, to a tenth of a millimeter within 10 km.
   for (int i = 0; i < 28; ++i) {
     const double across_m = (near_m + far_m) / 2;
     (first_arrival_s(own_depth_m, depth_m, across_m) < time_s ? near_m : far_m) = across_m;

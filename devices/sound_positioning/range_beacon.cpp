@@ -94,7 +94,7 @@ void RangeBeacon::look_at(const sim::SenseContext& context, const std::string& b
   const double range_m = p_S.norm();
   if (range_m > params_.range_max_m || !carries(context.world.medium(), params_.through, p_W)) return;
   if (params_.occlusion && range_m > 0) {
-    // A fixed beacon may be attached to a wall: ignore obstacles in the last millimetre.
+    // A fixed beacon may be attached to a wall: ignore obstacles in the last millimeter.
     const double reach_m = std::max(0.0, range_m - 1e-3);
     const sim::Vector3d direction_W = context.X_WS.linear() * (p_S / range_m);
     const auto hit =

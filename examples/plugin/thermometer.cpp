@@ -19,7 +19,7 @@ class Thermometer final : public sim::Sensor {
     sim::NoiseParams noise;
     void read(sim::ParamReader& in) {
       in.read("origin_degc", origin_degc, sim::at_least(-273.15), "temperature at the origin of the world");
-      in.read("slope_degcpm", slope_degcpm, sim::any_number(), "its change per metre along x, y and z");
+      in.read("slope_degcpm", slope_degcpm, sim::any_number(), "its change per meter along x, y and z");
       in.read("noise", noise, "error of the temperature, degrees");
     }
   };

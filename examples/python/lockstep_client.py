@@ -207,7 +207,7 @@ class LockstepClient:
 
 
 class Pilot:
-    """Drives towards what is ahead, and stops one metre before it."""
+    """Drives towards what is ahead, and stops one meter before it."""
 
     def __init__(self, vehicle):
         self.vehicle, self.ahead_m = vehicle, 0.0

@@ -46,7 +46,7 @@ print(f'{runs[0]}, run hash {runs[0].run_hash}')
 # %%
 figure, axes = plt.subplots(2, figsize=(7, 5), sharex=True, layout='constrained')
 start = commands[0][0]
-axes[0].plot([(utime - start) / 1e6 for utime, _ in ahead_m], [metres for _, metres in ahead_m])
+axes[0].plot([(utime - start) / 1e6 for utime, _ in ahead_m], [meters for _, meters in ahead_m])
 axes[0].axhline(1, color='0.7', label='where it is to stop')
 axes[0].legend()
 axes[0].set_ylabel('distance ahead in m')

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Drives rover1 towards what is ahead, in lockstep with `shoal run`, and stops one metre before it."""
+"""Drives rover1 towards what is ahead, in lockstep with `shoal run`, and stops one meter before it."""
 import sys
 
 import shoal

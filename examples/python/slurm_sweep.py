@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # %% [markdown]
 # # A sweep on a cluster
-# How much the loss of messages costs a rover that localises itself by its neighbours: a campaign over the loss
+# How much the loss of messages costs a rover that localizes itself by its neighbors: a campaign over the loss
 # probability, with several seeds at each point.  Its runs are jobs of Slurm where there is one, otherwise processes of
 # this machine; the results are the same.  Makes `slurm_sweep.png`.  RUNS, SECONDS: seeds at each point, simulated time.
 

@@ -175,7 +175,7 @@ class Model {
       if (each.is_wheel) height_m = std::max(height_m, each.radius_m - each.position_m[2]);
     return height_m;
   }
-  /// The tilt at which the centre of mass of the first body is above the axle.
+  /// The tilt at which the center of mass of the first body is above the axle.
   double balanced_tilt_rad() const {
     double mass_kg = 0, x = 0, z = 0;
     for (std::size_t i = 0; i < first_body_parts_; ++i) {

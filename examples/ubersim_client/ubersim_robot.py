@@ -139,7 +139,7 @@ def robot_of(root, width):
 
 
 def balanced_tilt_rad(parts, wheel):
-    """The tilt at which the centre of mass of the parts is above the axle."""
+    """The tilt at which the center of mass of the parts is above the axle."""
     mass_kg = sum(each['mass_kg'] for each in parts)
     if mass_kg == 0:
         raise Refused('the first <Body> must have a mass')

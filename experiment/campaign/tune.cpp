@@ -10,7 +10,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "experiment/optimise/cma_es.hpp"
+#include "experiment/optimize/cma_es.hpp"
 #include "experiment/process/signals.hpp"
 #include "experiment/study/run_files.hpp"
 #include "experiment/study/study_results.hpp"
@@ -80,14 +80,14 @@ void Tuning::run(const std::function<void(int generation)>& after) {
     if (best() == nullptr)
       throw std::runtime_error(fmt::format("no point of generation {} has a value{}", generation,
                                            runs.front().record ? "" : "; the first run: " + runs.front().failure));
-    search.learn(ranked_values(points, options_.maximise));
+    search.learn(ranked_values(points, options_.maximize));
     after(generation);
   }
 }
 
 bool Tuning::better(const TunedPoint& a, const TunedPoint& b) const {
   if (a.failed != b.failed) return a.failed < b.failed;
-  return options_.maximise ? a.value > b.value : a.value < b.value;
+  return options_.maximize ? a.value > b.value : a.value < b.value;
 }
 
 const TunedPoint* Tuning::best() const {
@@ -121,8 +121,8 @@ std::string Tuning::command(const TunedPoint& point) const {
   return command_of(study_, run);
 }
 
-std::vector<double> ranked_values(const std::vector<TunedPoint>& points, bool maximise) {
-  const auto value_of = [&](const TunedPoint& point) { return maximise ? point.value : -point.value; };
+std::vector<double> ranked_values(const std::vector<TunedPoint>& points, bool maximize) {
+  const auto value_of = [&](const TunedPoint& point) { return maximize ? point.value : -point.value; };
   std::map<std::size_t, std::vector<std::size_t>> by_failed;
   for (std::size_t i = 0; i < points.size(); ++i)
     if (std::isfinite(points[i].value)) by_failed[points[i].failed].push_back(i);

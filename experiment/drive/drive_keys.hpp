@@ -14,7 +14,7 @@ class DriveKeys {
   enum class Effect { none, sign_of_life, next_joint };
 
   explicit DriveKeys(const DriveProfile::Keys& keys) : keys_(keys) {}
-  /// Takes a key by its name, as in KeyEvent.  Every key of the profile is a sign of life except the one that centres.
+  /// Takes a key by its name, as in KeyEvent.  Every key of the profile is a sign of life except the one that centers.
   Effect press(const std::string& key);
   /// Returns the set position of each axis.
   const DriveValues& values() const { return values_; }

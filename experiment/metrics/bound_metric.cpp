@@ -143,7 +143,7 @@ void BoundMetric::Params::check(const sim::MetricConfig& metric, const sim::Worl
     if (!named || !instance.config || errors_of(*instance.config, world.physics.step_s).can_navigate()) continue;
     diagnostics.error(
         metric.place, "metric '" + metric.name + "'",
-        "vehicle '" + instance.name + "' cannot localise itself: it needs gps, odometry, or dvl with ahrs or compass");
+        "vehicle '" + instance.name + "' cannot localize itself: it needs gps, odometry, or dvl with ahrs or compass");
   }
 }
 
@@ -281,7 +281,7 @@ void BoundMetric::use_packet(int receiver, const VehicleErrors::Point& modem,
   double clocks_s2 = 0;
   for (const auto& [index, vehicle] : {std::pair(sender, from), std::pair(receiver, to)})
     if (bound_.errors(index).disciplined()) clocks_s2 += std::pow(vehicle->clock().estimated_std_s(world_.now()), 2);
-  constexpr double sound_speed_mps = 1500;  // for errors of less than a centimetre
+  constexpr double sound_speed_mps = 1500;  // for errors of less than a centimeter
   bound_.add_range(sent, {sender, bound_.errors(sender).modems.front().at_V}, arrived, {receiver, modem.at_V},
                    world_.now(), clocks_s2 * sound_speed_mps * sound_speed_mps);
 }

@@ -7,10 +7,10 @@ namespace tools {
 
 namespace {
 
-/// Bytes sent per metre of reduced rms error.
-class BytesPerMetreMetric final : public Metric {
+/// Bytes sent per meter of reduced rms error.
+class BytesPerMeterMetric final : public Metric {
  public:
-  static constexpr const char* meaning = "bytes sent for each metre by which the position error is smaller";
+  static constexpr const char* meaning = "bytes sent for each meter by which the position error is smaller";
   static std::vector<sim::FigureKind> figures() {
     return {{"bytes_per_metre", "bytes/m", "bytes_sent / reduction_m; none when the error did not become smaller"},
             {"bytes_sent", "bytes", "payload of the packets that the modems sent", true},
@@ -29,7 +29,7 @@ class BytesPerMetreMetric final : public Metric {
     }
   };
 
-  BytesPerMetreMetric(const MetricContext& context, const Params& params)
+  BytesPerMeterMetric(const MetricContext& context, const Params& params)
       : Metric(context), params_(params), world_(context.world) {}
 
   bool needs_others() const override { return true; }
@@ -53,7 +53,7 @@ class BytesPerMetreMetric final : public Metric {
   const sim::World& world_;
 };
 
-SHOAL_METRIC("bytes_per_metre", BytesPerMetreMetric);
+SHOAL_METRIC("bytes_per_metre", BytesPerMeterMetric);
 
 }  // namespace
 

@@ -14,7 +14,7 @@ class ConsistencyMetric final : public EstimateMetric {
  public:
   static constexpr const char* meaning = "whether the covariance of the estimates says how large their errors are";
   static std::vector<sim::FigureKind> figures() {
-    return {{"nees_mean", "1", "mean normalised estimation error squared; the number of dimensions when consistent"},
+    return {{"nees_mean", "1", "mean normalized estimation error squared; the number of dimensions when consistent"},
             {"inside_95_share", "1", "share of the errors within their own 95 % bound; 0.95 when consistent"},
             {"samples", "estimates", "estimates that were compared with the truth", true}};
   }

@@ -5,10 +5,10 @@ namespace tools {
 
 namespace {
 
-/// Distance travelled by a vehicle.
+/// Distance traveled by a vehicle.
 class DistanceMetric final : public Metric {
  public:
-  static constexpr const char* meaning = "distance travelled by a vehicle";
+  static constexpr const char* meaning = "distance traveled by a vehicle";
   static std::vector<sim::FigureKind> figures() {
     return {{"travelled_m", "m", "length of the true path, in three dimensions"}};
   }
@@ -36,7 +36,7 @@ class DistanceMetric final : public Metric {
   const Params& params_;
   const sim::World& world_;
   const TruthHistory& truth_;
-  double before_m_ = 0;  ///< distance travelled before the metric counts
+  double before_m_ = 0;  ///< distance traveled before the metric counts
 };
 
 SHOAL_METRIC("distance", DistanceMetric);

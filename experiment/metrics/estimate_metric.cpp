@@ -73,7 +73,7 @@ void EstimateMetric::after_step() {
 
 std::string EstimateMetric::why_none(const std::string& figure) const {
   if (!samples_.empty() && figure == "per_distance_percent")
-    return fmt::format("the vehicle had travelled less than {} m", min_distance_m);
+    return fmt::format("the vehicle had traveled less than {} m", min_distance_m);
   if (bad_messages_ > 0)
     return fmt::format("none of {} message{} on '{}' could be used", bad_messages_, bad_messages_ == 1 ? "" : "s",
                        params_.channel);

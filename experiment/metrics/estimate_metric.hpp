@@ -40,7 +40,7 @@ class EstimateMetric : public Metric {
 
   /// Throws std::runtime_error when the metric cannot use the estimate.
   virtual void check(const Estimate& /*estimate*/) const {}
-  /// Returns the normalised estimation error squared (Bar-Shalom, Li and Kirubarajan 2001); NaN without a valid
+  /// Returns the normalized estimation error squared (Bar-Shalom, Li and Kirubarajan 2001); NaN without a valid
   /// covariance.
   double nees(const Estimate& estimate, const sim::Vector3d& error) const;
   const Params& params() const { return params_; }

@@ -19,7 +19,7 @@ class PositionErrorMetric final : public EstimateMetric {
         {"rms_m", "m", "root mean square of the position errors"},
         {"final_m", "m", "position error of the last estimate"},
         {"max_m", "m", "largest position error"},
-        {"per_distance_percent", "%", "last error over the distance travelled until then, when that is at least 1 m"},
+        {"per_distance_percent", "%", "last error over the distance traveled until then, when that is at least 1 m"},
         {"max_gap_s", "s", "longest time without an estimate, from `from_s` to `until_s` or the end"},
         {"samples", "estimates", "estimates that were compared with the truth", true}};
   }

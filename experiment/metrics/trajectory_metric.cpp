@@ -18,7 +18,7 @@ namespace tools {
 
 namespace {
 
-/// Pose in the plane, with the distance travelled until then.
+/// Pose in the plane, with the distance traveled until then.
 struct PlanarPose {
   Eigen::Vector2d p_W = Eigen::Vector2d::Zero();
   double yaw_rad = 0;
@@ -32,7 +32,8 @@ Eigen::Vector2d seen_from(const PlanarPose& pose, const Eigen::Vector2d& p_W) {
 }
 
 /// Sums from which the smallest rms distance of two point sets under a rigid motion follows (Horn 1987, in the plane):
-/// for centred sets a, b it is sqrt((sum |a|^2 + sum |b|^2 - 2 sqrt(C^2 + S^2)) / n) with C = sum a . b, S = sum a x b.
+/// for centered sets a, b it is sqrt((sum |a|^2 + sum |b|^2 - 2 sqrt(C^2 + S^2)) / n) with C = sum a . b, S = sum a x
+/// b.
 struct AlignmentSums {
   double count = 0, dot = 0, cross = 0, squares = 0, error_squares = 0;
   Eigen::Vector2d truth = Eigen::Vector2d::Zero(), estimate = Eigen::Vector2d::Zero();
@@ -69,7 +70,7 @@ class TrajectoryMetric final : public Metric {
              "root mean square of the position errors at the end of segments of `segment_m`, seen from "
              "their starts"},
             {"segment_deg", "deg", "the same of the headings"},
-            {"segments", "segments", "segments that were compared, one from every metre travelled", true},
+            {"segments", "segments", "segments that were compared, one from every meter traveled", true},
             {"lost_s", "s", "longest time with a position error above `lost_m`, from the first estimate on"},
             {"poses", "poses", "poses that were compared with the truth", true}};
   }
@@ -82,7 +83,7 @@ class TrajectoryMetric final : public Metric {
       in.require("channel");
       read_channel(in);
       read_period(in);
-      in.read("segment_m", segment_m, sim::between(1, 1000), "distance travelled in a segment");
+      in.read("segment_m", segment_m, sim::between(1, 1000), "distance traveled in a segment");
       in.read("lost_m", lost_m, sim::above_to(0, 1e6), "position error from which the vehicle counts as lost");
     }
   };
@@ -140,7 +141,7 @@ class TrajectoryMetric final : public Metric {
 
  private:
   static constexpr double memory_s = 10;
-  /// A start of segments is kept each time the vehicle has travelled this far.
+  /// A start of segments is kept each time the vehicle has traveled this far.
   static constexpr double start_every_m = 1;
   /// Truth and estimate at the start of a segment.
   struct Start {
@@ -159,7 +160,7 @@ class TrajectoryMetric final : public Metric {
   void remember() {
     const PlanarPose& before = recent_[slot_of(world_.step_number() - 1)];
     PlanarPose now = present();
-    // A vehicle that was carried has not travelled the distance, and no segment contains it.
+    // A vehicle that was carried has not traveled the distance, and no segment contains it.
     constexpr double fastest_mps = 200;
     const double distance_m = (now.p_W - before.p_W).norm();
     const bool carried = distance_m > fastest_mps * sim::to_seconds(world_.step_time());

@@ -65,10 +65,10 @@ std::vector<std::string> distinct(const std::vector<Cell>& cells, std::string Ce
   return values;
 }
 
-const char* colour_of(const std::string& covariance) {
-  if (covariance == "right") return "#1b9e77";
-  if (covariance == "too sure") return "#d03030";
-  return covariance == "too careful" ? "#1f77b4" : "currentColor";
+const char* color_of(const std::string& covariance) {
+  if (covariance == "consistent") return "#1b9e77";
+  if (covariance == "overconfident") return "#d03030";
+  return covariance == "conservative" ? "#1f77b4" : "currentColor";
 }
 
 /// One line for each world, with a dot and the interval of each algorithm: rms over that of the bound.
@@ -92,12 +92,12 @@ std::string chart(const std::vector<Cell>& cells) {
       const double middle = y + row_height / 2;
       labels += fmt::format("<text x=\"{}\" y=\"{:.1f}\" text-anchor=\"end\">{}</text>", left - 8, middle + 3.5,
                             html_text(cell.algorithm));
-      const char* colour = colour_of(cell.covariance);
+      const char* color = color_of(cell.covariance);
       if (cell.efficiency.low > 0)
         marks += fmt::format("<path d=\"M{:.1f} {:.1f}H{:.1f}\" stroke=\"{}\"/>", px(1 / cell.efficiency.high), middle,
-                             px(1 / cell.efficiency.low), colour);
+                             px(1 / cell.efficiency.low), color);
       marks += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>", px(1 / cell.efficiency.value),
-                           middle, colour);
+                           middle, color);
       y += row_height;
     }
     y += gap;
@@ -117,8 +117,10 @@ std::string chart(const std::vector<Cell>& cells) {
              "style=\"max-width:100%;height:auto\"><g font-size=\"10\" fill=\"currentColor\">",
              y + 22, title) +
          lines + labels + marks + "</g></svg><figcaption>" + title +
-         " (log), with 95 % intervals. Colour: the covariance is <span style=\"color:#1b9e77\">right</span>, <span "
-         "style=\"color:#d03030\">too sure</span> or <span style=\"color:#1f77b4\">too careful</span>.</figcaption>"
+         " (log), with 95 % intervals. Color: the covariance is <span style=\"color:#1b9e77\">consistent</span>, "
+         "<span "
+         "style=\"color:#d03030\">overconfident</span> or <span "
+         "style=\"color:#1f77b4\">conservative</span>.</figcaption>"
          "</figure>\n";
 }
 
@@ -126,7 +128,7 @@ std::string cell_html(const Cell& cell) {
   if (cell.runs == 0) return "<td>-</td>";
   const std::string lacking = cell.runs < cell.planned ? fmt::format("<br>{} of {} runs", cell.runs, cell.planned) : "";
   return fmt::format("<td>{} m<br><span style=\"color:{}\" title=\"{}\">NEES {}</span><br>bound / rms {}{}</td>",
-                     html_text(cell.rms.text()), colour_of(cell.covariance), html_text(cell.covariance),
+                     html_text(cell.rms.text()), color_of(cell.covariance), html_text(cell.covariance),
                      html_text(cell.nees.text()), html_text(cell.efficiency.text()), lacking);
 }
 
@@ -154,7 +156,7 @@ std::string table(const std::vector<Cell>& cells) {
   }
   return html +
          "</tbody></table></div>\n<p>rms: root of the mean square over the seeds, with the 95 % bootstrap interval. "
-         "NEES: mean over the seeds with Student's 95 % interval; 2 is right. bound / rms: efficiency against the "
+         "NEES: mean over the seeds with Student's 95 % interval; 2 is consistent. bound / rms: efficiency against the "
          "reference of the metric bound; an estimator that knows the speed of a craft between its fixes, which the "
          "reference does not, can be above 1. B/h: payload that a vehicle says, us/event: CPU time, each the "
          "greatest of the worlds.</p>\n";

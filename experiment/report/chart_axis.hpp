@@ -30,7 +30,7 @@ class ChartAxis {
 /// Returns where a value lies between the first tick, 0, and the last one, 1.
 double share_of_axis(const std::vector<double>& ticks, bool log, double value);
 
-/// Returns the text of a tick, with the digits that distinguish it from its neighbours.
+/// Returns the text of a tick, with the digits that distinguish it from its neighbors.
 std::string tick_text(const std::vector<double>& ticks, double tick);
 
 }  // namespace tools

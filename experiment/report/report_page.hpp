@@ -24,12 +24,12 @@ std::string comparison_report(const std::vector<RunRecord>& runs);
 
 /// Returns verdict, rules, and the findings in words.
 std::string outcome_html(const RunRecord& run, const std::vector<RunMetric>& metrics);
-/// Returns `passed`, `FAILED` or `not judged`, coloured; `why` follows after a colon.
+/// Returns `passed`, `FAILED` or `not judged`, colored; `why` follows after a colon.
 std::string judgement_html(Judgement judgement, const std::string& why = "");
 std::string verdict_html(bool passed);
 /// Returns the rules with their outcome: failed ones first, then the passed ones, collapsed.
 std::string rules_html(const std::vector<RunRecord::Rule>& rules);
-/// Returns a box with a coloured edge and the content `html`.
+/// Returns a box with a colored edge and the content `html`.
 std::string verdict_box(Judgement judgement, const std::string& html);
 /// Returns texts as a list; nothing when there are none.
 std::string list_html(const std::vector<std::string>& texts);

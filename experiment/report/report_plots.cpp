@@ -25,9 +25,9 @@ const std::map<std::string, std::string>& captions_of_run() {
       {"tracks.png",
        "Tracks from above: true positions broad and pale, estimates thin and dashed, outlines of objects grey."},
       {"errors.png", "Distance between estimate and truth over time; dashed: three times the estimate's own sigma."},
-      {"errors_by_distance.png", "The same errors over the distance travelled."},
+      {"errors_by_distance.png", "The same errors over the distance traveled."},
       {"nees.png",
-       "Normalised estimation error squared over time, with its mean and 95 % bound for a consistent estimate."}};
+       "Normalized estimation error squared over time, with its mean and 95 % bound for a consistent estimate."}};
   return captions;
 }
 

@@ -50,7 +50,7 @@ double rms_of(const RunMetric& metric) {
   return metric.value("rms_m").value_or(std::numeric_limits<double>::infinity());
 }
 
-/// Returns the distance that the vehicle travelled until its last estimate; empty: unknown.
+/// Returns the distance that the vehicle traveled until its last estimate; empty: unknown.
 std::string after_distance(const RunMetric& metric) {
   const auto final_m = metric.value("final_m");
   const auto percent = metric.value("per_distance_percent");
@@ -70,7 +70,7 @@ std::string position_sentence(const std::string& vehicle, Metrics metrics) {
   if (vehicle.empty())
     text = best.name + ": " + length_text(rms_of(best)) + " rms";
   else if (best.channel.starts_with(vehicle + "."))
-    text = fmt::format("{} localises itself to {} rms ({})", vehicle, length_text(rms_of(best)), best.name);
+    text = fmt::format("{} localizes itself to {} rms ({})", vehicle, length_text(rms_of(best)), best.name);
   else
     text = fmt::format("{} is located to {} rms ({})", vehicle, length_text(rms_of(best)), best.name);
   // Final error of a single estimate.
@@ -102,7 +102,7 @@ std::string many_vehicles_sentence(const std::vector<std::pair<std::string, Metr
     max_m = std::max(max_m, best_m);
   }
   if (located == 0) return fmt::format("None of {} vehicles published a position.", by_vehicle.size());
-  return fmt::format("{} of {} vehicles localise themselves to {} to {} rms, {} worst.", located, by_vehicle.size(),
+  return fmt::format("{} of {} vehicles localize themselves to {} to {} rms, {} worst.", located, by_vehicle.size(),
                      length_text(min_m), length_text(max_m), worst);
 }
 
@@ -148,7 +148,7 @@ std::string ratio_sentence(const RunMetric& metric) {
 
 std::string distance_sentence(const RunMetric& metric) {
   if (!metric.value("travelled_m")) return metric.name + ": nothing was measured.";
-  return (metric.vehicle.empty() ? metric.name + ": " : metric.vehicle + " travelled ") +
+  return (metric.vehicle.empty() ? metric.name + ": " : metric.vehicle + " traveled ") +
          length_text(metric.value("travelled_m").value_or(0)) + ".";
 }
 
@@ -168,7 +168,7 @@ std::string cost_sentence(const RunMetric& metric) {
   if (!reduction_m) return fmt::format("{}: {} were sent; there are no errors to compare.", metric.name, bytes);
   if (!(*reduction_m > 0))
     return fmt::format("{}: {} were sent, and the error did not become smaller.", metric.name, bytes);
-  return fmt::format("{}: {} of messages made the rms error {} smaller, {} bytes for each metre.", metric.name, bytes,
+  return fmt::format("{}: {} of messages made the rms error {} smaller, {} bytes for each meter.", metric.name, bytes,
                      length_text(*reduction_m), rounded(metric.value("bytes_per_metre").value_or(0)));
 }
 

@@ -13,7 +13,7 @@ namespace tools {
 std::string rules_in_words(const std::vector<RunRecord::Rule>& rules);
 
 /// Describes the results of the metrics, one sentence each:
-/// `auv localises itself to 0.91 m rms (cooperative); alone: 61 m rms, 138 m at the end, after 2.81 km.`
+/// `auv localizes itself to 0.91 m rms (cooperative); alone: 61 m rms, 138 m at the end, after 2.81 km.`
 std::vector<std::string> findings_in_words(const std::vector<RunMetric>& metrics);
 /// Describes the contacts between bodies: `auv4 hits rock at 105.7 s, 3 times in all.`
 std::vector<std::string> contacts_in_words(const RunRecord& run);

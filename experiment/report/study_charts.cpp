@@ -87,9 +87,9 @@ class ChartWriter {
   }
   double py(double y) const { return bottom - share_of_axis(y_ticks_, false, y) * (bottom - top); }
 
-  static const char* colour(std::size_t number) {
-    static constexpr const char* colours[] = {"#1f77b4", "#d95f02", "#1b9e77", "#7570b3", "#e7298a", "#666666"};
-    return colours[number % std::size(colours)];
+  static const char* color(std::size_t number) {
+    static constexpr const char* colors[] = {"#1f77b4", "#d95f02", "#1b9e77", "#7570b3", "#e7298a", "#666666"};
+    return colors[number % std::size(colors)];
   }
 
   std::string axes() const {
@@ -127,7 +127,7 @@ class ChartWriter {
         x = left;
         height += 14;
       }
-      svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" fill=\"{}\">{}</text>", x, height - 6, colour(number++),
+      svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" fill=\"{}\">{}</text>", x, height - 6, color(number++),
                          html_text(curve.name));
       x += width;
     }
@@ -143,12 +143,12 @@ class ChartWriter {
       if (!std::isfinite(point.mean) || (chart_.log_x && point.x <= 0)) continue;
       line += fmt::format("{}{:.1f} {:.1f}", line.empty() ? "M" : "L", px(point.x) + shift, py(point.mean));
       marks += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.5\" fill=\"{}\" stroke=\"none\"/>",
-                           px(point.x) + shift, py(point.mean), colour(number));
+                           px(point.x) + shift, py(point.mean), color(number));
       if (std::isfinite(point.low) && std::isfinite(point.high))
         marks += fmt::format("<path d=\"M{:.1f} {:.1f}V{:.1f}\"/>", px(point.x) + shift, py(point.low), py(point.high));
     }
     if (line.empty()) return {};
-    return fmt::format("<g stroke=\"{}\" fill=\"none\"><path d=\"{}\" stroke-width=\"1.5\"/>{}</g>", colour(number),
+    return fmt::format("<g stroke=\"{}\" fill=\"none\"><path d=\"{}\" stroke-width=\"1.5\"/>{}</g>", color(number),
                        line, marks);
   }
 

@@ -14,7 +14,7 @@ namespace tools {
 
 namespace {
 
-/// More vehicles than this are drawn as dots in one colour.
+/// More vehicles than this are drawn as dots in one color.
 constexpr std::size_t max_named_tracks = 12;
 
 using Tracks = std::vector<Scoring::Track>;
@@ -172,7 +172,7 @@ std::string nees_script(const Tracks& tracks) {
     curves.push_back(fmt::format("{:.4f} dt 3 lc 'black' title '95 % bound ({}D)'", chi_square_95(size), size));
   }
   return "set output 'nees.png'\nset size noratio\nset xlabel 'time (s)'\n"
-         "set ylabel 'normalised estimation error squared'\nset logscale y\nset yrange [1e-3:*]\n" +
+         "set ylabel 'normalized estimation error squared'\nset logscale y\nset yrange [1e-3:*]\n" +
          joined(curves) + "unset logscale y\nset autoscale y\n";
 }
 
@@ -192,7 +192,7 @@ std::string run_plots_script(const sim::World& world, const Scoring& scoring) {
   const auto went = [](const Scoring::Track& track) { return track.samples->back().travelled_m >= min_distance_m; };
   if (std::any_of(tracks.begin(), tracks.end(), went)) {
     script += title_of(world, "position error over distance");
-    script += errors_script(tracks, "errors_by_distance.png", "distance travelled (m)", 10);
+    script += errors_script(tracks, "errors_by_distance.png", "distance traveled (m)", 10);
   }
   return script + title_of(world, "consistency of the estimates") + nees_script(tracks);
 }

@@ -44,7 +44,7 @@ class RunPage {
   };
   /// Executes a request of `sim.control`; none: it is still undecided.
   using Execute = std::function<Answer(const std::string& command, double value, const std::string& text)>;
-  /// What the run is, if it is not a usual one.
+  /// Kind of run, unless it is an ordinary one.
   struct Source {
     std::string record;       ///< `recorded`: a record that is run again; `branched`: it has left its record
     std::string programs;     ///< where the messages of programs come from; empty: from programs

@@ -443,7 +443,7 @@ void TimeControl::restore_with_clients(const Snapshot& snapshot, const std::stri
   const std::int64_t needed = inputs_.needed_from(snapshot.step, max_lead_s * steps_per_second_);
   const auto base = ring_.newest_until(std::max(needed, first_step_));
   if (!base)
-    refuse(ring_.oldest() ? fmt::format("its {:.6g} s are before the history of this run, which starts at {:.6g} s",
+    refuse(ring_.oldest() ? fmt::format("t = {:.6g} s precedes this run's history, which starts at {:.6g} s",
                                         snapshot.time_s(), sim::to_seconds(world_.step_time() * *ring_.oldest()))
                           : "this run keeps no history (see --rewind-s)");
   rewind_to(*base, snapshot.step, run_on);

@@ -21,7 +21,7 @@ using Figures = std::map<std::string, double>;
 
 inline constexpr double no_figure = std::numeric_limits<double>::quiet_NaN();
 
-/// Errors are divided by the distance travelled from this distance on, because a vehicle at rest may creep.
+/// Errors are divided by the distance traveled from this distance on, because a vehicle at rest may creep.
 inline constexpr double min_distance_m = 1;
 
 /// Estimate and truth at the estimate's own time.
@@ -30,9 +30,9 @@ struct ErrorSample {
   double error_m = 0;
   sim::Vector3d truth_m = sim::Vector3d::Zero();
   sim::Vector3d estimate_m = sim::Vector3d::Zero();
-  double travelled_m = 0;      ///< distance travelled by the true position from the start
+  double travelled_m = 0;      ///< distance traveled by the true position from the start
   double sigma_m = no_figure;  ///< rms error predicted by the covariance of the estimate; NaN: no covariance
-  double nees = no_figure;     ///< normalised estimation error squared; NaN without a covariance
+  double nees = no_figure;     ///< normalized estimation error squared; NaN without a covariance
   void visit_state(sim::StateArchive& archive) {
     archive(time_s, error_m, truth_m, estimate_m, travelled_m, sigma_m, nees);
   }

@@ -19,31 +19,31 @@ double cross(const Vector2d& a, const Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Mass, centre of mass and its velocity.
-struct Centre {
+/// Mass, center of mass and its velocity.
+struct Center {
   double mass_kg = 0;
   Vector3d p_W = Vector3d::Zero(), v_W = Vector3d::Zero();
 };
 
-Centre centre_of(const sim::Vehicle& vehicle) {
-  Centre centre;
+Center center_of(const sim::Vehicle& vehicle) {
+  Center center;
   for (const auto& [name, body] : vehicle.bodies()) {
     const double mass_kg = body->mass_kg();
     if (mass_kg <= 0) continue;
-    centre.mass_kg += mass_kg;
-    centre.p_W += mass_kg * (body->X_WB() * body->p_BC());
-    centre.v_W += mass_kg * body->velocity_at_W(body->p_BC());
+    center.mass_kg += mass_kg;
+    center.p_W += mass_kg * (body->X_WB() * body->p_BC());
+    center.v_W += mass_kg * body->velocity_at_W(body->p_BC());
   }
-  if (centre.mass_kg > 0) {
-    centre.p_W /= centre.mass_kg;
-    centre.v_W /= centre.mass_kg;
+  if (center.mass_kg > 0) {
+    center.p_W /= center.mass_kg;
+    center.v_W /= center.mass_kg;
   }
-  return centre;
+  return center;
 }
 
-/// Least height that the centre of mass rises when the vehicle turns over an edge, m.
+/// Least height that the center of mass rises when the vehicle turns over an edge, m.
 double height_over_edges(const std::vector<Vector3d>& contacts_W, const std::vector<Vector2d>& polygon,
-                         const Vector3d& centre_W) {
+                         const Vector3d& center_W) {
   const auto height_at = [&](const Vector2d& corner) {
     double height = 0;
     for (const Vector3d& contact : contacts_W)
@@ -56,7 +56,7 @@ double height_over_edges(const std::vector<Vector3d>& contacts_W, const std::vec
     const Vector2d& b = polygon[(i + 1) % polygon.size()];
     const Vector3d from(a.x(), a.y(), height_at(a)), to(b.x(), b.y(), height_at(b));
     const Vector3d axis = (to - from).normalized();
-    const Vector3d arm = (centre_W - from) - axis * axis.dot(centre_W - from);  // from the edge, square to it
+    const Vector3d arm = (center_W - from) - axis * axis.dot(center_W - from);  // from the edge, square to it
     const double slope = std::hypot(axis.x(), axis.y());                        // cos of the slope of the edge
     // Highest point of the circle around the edge.
     rise = std::min(rise, arm.norm() * slope - arm.z());
@@ -122,19 +122,19 @@ std::optional<Support> support_of(const sim::World& world, const sim::Vehicle& v
   Support support;
   support.polygon_W = convex_hull_of(points);
   if (support.polygon_W.size() < 3) return std::nullopt;
-  // Centre of mass, its height above the contacts, and the points below it.
-  const Centre centre = centre_of(vehicle);
+  // Center of mass, its height above the contacts, and the points below it.
+  const Center center = center_of(vehicle);
   double ground_m = 0;
   for (const Vector3d& contact : contacts_W) ground_m += contact.z() / static_cast<double>(contacts_W.size());
   const double gravity_mps2 = world.physics().gravity_mps2();
-  const double pendulum_s = gravity_mps2 > 0 ? std::sqrt(std::max(centre.p_W.z() - ground_m, 0.0) / gravity_mps2) : 0.0;
-  const Vector2d below = centre.p_W.head<2>();
-  const Vector2d capture = below + pendulum_s * centre.v_W.head<2>();
+  const double pendulum_s = gravity_mps2 > 0 ? std::sqrt(std::max(center.p_W.z() - ground_m, 0.0) / gravity_mps2) : 0.0;
+  const Vector2d below = center.p_W.head<2>();
+  const Vector2d capture = below + pendulum_s * center.v_W.head<2>();
   const Vector2d zmp = weighted / force_N;
   support.static_margin_m = margin_in(support.polygon_W, below);
   support.zmp_margin_m = margin_in(support.polygon_W, zmp);
   support.capture_margin_m = margin_in(support.polygon_W, capture);
-  support.nesm_m = support.static_margin_m > 0 ? height_over_edges(contacts_W, support.polygon_W, centre.p_W) : 0;
+  support.nesm_m = support.static_margin_m > 0 ? height_over_edges(contacts_W, support.polygon_W, center.p_W) : 0;
   return support;
 }
 

@@ -17,18 +17,18 @@ namespace tools {
 /// support polygon, seen from above, m: negative outside.
 struct Support {
   std::vector<Eigen::Vector2d> polygon_W;  ///< convex hull of the contacts, counter-clockwise; m
-  double static_margin_m = 0;              ///< of the centre of mass
-  double zmp_margin_m = 0;                 ///< of the centre of pressure (ZMP), never outside
+  double static_margin_m = 0;              ///< of the center of mass
+  double zmp_margin_m = 0;                 ///< of the center of pressure (ZMP), never outside
   double capture_margin_m = 0;             ///< of the capture point, at which a step would bring the vehicle to rest
-  double nesm_m = 0;                       ///< height that the centre of mass must rise to tip over an edge; 0: outside
+  double nesm_m = 0;                       ///< height that the center of mass must rise to tip over an edge; 0: outside
 };
 
 /// Returns how a vehicle stands; none when fewer than three contacts carry it.  The contacts of its group must be
 /// watched.
 ///
-/// The centre of pressure is the mean of the contacts by their vertical forces, on level ground the zero-moment point.
+/// The center of pressure is the mean of the contacts by their vertical forces, on level ground the zero-moment point.
 /// The capture point is x + v sqrt(z / g) of the linear inverted pendulum (Pratt et al. 2006, "Capture point: a step
-/// toward humanoid push recovery"), the height over an edge the normalised energy stability margin (Hirose et al.
+/// toward humanoid push recovery"), the height over an edge the normalized energy stability margin (Hirose et al.
 /// 1998).
 std::optional<Support> support_of(const sim::World& world, const sim::Vehicle& vehicle);
 

@@ -23,11 +23,11 @@ TruthHistory::TruthHistory(const sim::World& world, const sim::Vehicle& vehicle)
 void TruthHistory::after_step() {
   const Truth& before = recent_[slot_of(world_.step_number() - 1)];
   const sim::Vector3d position_m = world_.find_vehicle(vehicle_)->X_WV().translation();
-  // A vehicle that was placed elsewhere has not travelled the distance.
+  // A vehicle that was placed elsewhere has not traveled the distance.
   constexpr double fastest_mps = 200;
   const double distance_m = (position_m - before.position_m).norm();
-  const bool travelled = distance_m <= fastest_mps * sim::to_seconds(world_.step_time());
-  recent_[slot_of(world_.step_number())] = {position_m, before.travelled_m + (travelled ? distance_m : 0)};
+  const bool traveled = distance_m <= fastest_mps * sim::to_seconds(world_.step_time());
+  recent_[slot_of(world_.step_number())] = {position_m, before.travelled_m + (traveled ? distance_m : 0)};
 }
 
 void TruthHistory::visit_state(sim::StateArchive& archive) {

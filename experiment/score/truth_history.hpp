@@ -14,13 +14,13 @@ namespace tools {
 /// are clamped to the smallest or largest time.
 sim::Time true_time_of(const sim::World& world, const sim::Vehicle& vehicle, std::int64_t utime);
 
-/// Positions of a vehicle in the last seconds, and its distance travelled.
+/// Positions of a vehicle in the last seconds, and its distance traveled.
 class TruthHistory {
  public:
   static constexpr double memory_s = 10;
   struct Truth {
     sim::Vector3d position_m = sim::Vector3d::Zero();
-    double travelled_m = 0;  ///< distance travelled from the start
+    double travelled_m = 0;  ///< distance traveled from the start
     void visit_state(sim::StateArchive& archive) { archive(position_m, travelled_m); }
   };
 

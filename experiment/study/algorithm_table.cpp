@@ -18,8 +18,8 @@ namespace tools {
 namespace {
 
 constexpr std::size_t bootstrap_samples = 2000;
-constexpr double right_nees = 2;  ///< dimensions of the horizontal error
-constexpr double clear_nees = 4;  ///< an interval up to there tells enough
+constexpr double consistent_nees = 2;  ///< dimensions of the horizontal error
+constexpr double clear_nees = 4;       ///< an interval up to there tells enough
 constexpr std::int64_t min_trust_runs = 5;
 /// Logarithms of a ratio that differ from 0 by rounding only.
 constexpr double equal_log = 1e-9;
@@ -61,9 +61,9 @@ Interval bootstrap_95(const std::vector<SeedSquares>& seeds, Statistic statistic
 
 Trust trust_of(const Statistics& nees) {
   if (nees.count < min_trust_runs) return Trust::unknown;
-  if (nees.mean_95.low > right_nees) return Trust::too_sure;
-  if (nees.mean_95.high < right_nees) return Trust::too_careful;
-  return nees.mean_95.high > clear_nees ? Trust::unclear : Trust::right;
+  if (nees.mean_95.low > consistent_nees) return Trust::overconfident;
+  if (nees.mean_95.high < consistent_nees) return Trust::conservative;
+  return nees.mean_95.high > clear_nees ? Trust::unclear : Trust::consistent;
 }
 
 /// Runs of a case at a point.
@@ -174,12 +174,12 @@ std::vector<const AlgorithmCell*> ranked(const std::vector<AlgorithmCell>& cells
 
 const char* trust_word(Trust trust) {
   switch (trust) {
-    case Trust::right:
-      return "right";
-    case Trust::too_sure:
-      return "too sure";
-    case Trust::too_careful:
-      return "too careful";
+    case Trust::consistent:
+      return "consistent";
+    case Trust::overconfident:
+      return "overconfident";
+    case Trust::conservative:
+      return "conservative";
     case Trust::unclear:
       return "unclear";
     case Trust::unknown:
@@ -210,11 +210,11 @@ std::vector<std::string> AlgorithmTable::sentences() const {
     std::string text = fmt::format("{}: {} has the smallest rms, {} m, then {} with {} m; ratio in pairs {}",
                                    pair.world, pair.base, short_text(order[0]->rms_m), pair.algorithm,
                                    short_text(order[1]->rms_m), with_interval(pair.factor, pair.factor_95));
-    if (order[0]->trust == Trust::too_sure) {
+    if (order[0]->trust == Trust::overconfident) {
       const auto trusted = std::find_if(order.begin(), order.end(), [](const auto* cell) {
-        return cell->trust != Trust::too_sure && cell->trust != Trust::unclear;
+        return cell->trust != Trust::overconfident && cell->trust != Trust::unclear;
       });
-      text += fmt::format("; {} is too sure of itself (NEES {})", pair.base, short_text(order[0]->nees));
+      text += fmt::format("; {} is overconfident (NEES {})", pair.base, short_text(order[0]->nees));
       if (trusted != order.end())
         text +=
             fmt::format(", the best that is not is {} with {} m", (*trusted)->algorithm, short_text((*trusted)->rms_m));
@@ -232,7 +232,7 @@ std::string AlgorithmTable::text() const {
   }
   std::string text =
       fmt::format("{:<{}}  {:<{}}  {:>8}  {:<20}  {:<20}  {:<11}  {:<20}  {:>7}  {:>8}\n", "world", world, "algorithm",
-                  algorithm, "runs", "rms, m", "NEES (2 is right)", "covariance", "bound / rms", "B/h", "us/event");
+                  algorithm, "runs", "rms, m", "NEES (2: consistent)", "covariance", "bound / rms", "B/h", "us/event");
   for (const AlgorithmCell& cell : cells_)
     text += fmt::format(
         "{:<{}}  {:<{}}  {:>8}  {:<20}  {:<20}  {:<11}  {:<20}  {:>7}  {:>8}\n", cell.world, world, cell.algorithm,
@@ -259,7 +259,7 @@ std::string AlgorithmTable::markdown() const {
     const std::string nees = with_interval(cell.nees, cell.nees_95);
     text += fmt::format(
         "| {} | `{}` | {} | {} | {} | {} | {} | {} | {} | {} |\n", cell.world, cell.algorithm, runs_text(cell),
-        with_interval(cell.rms_m, cell.rms_95), cell.trust == Trust::too_sure ? "**" + nees + "**" : nees,
+        with_interval(cell.rms_m, cell.rms_95), cell.trust == Trust::overconfident ? "**" + nees + "**" : nees,
         trust_word(cell.trust), with_interval(cell.efficiency, cell.efficiency_95),
         pair == pairs_.end() ? (cell.runs > 0 && cell.algorithm == base_ ? "base" : "-")
                              : with_interval(pair->factor, pair->factor_95) + ", " + short_text(pair->wilcoxon_p),

@@ -9,13 +9,13 @@
 
 namespace tools {
 
-/// Whether the covariance of an algorithm is right, by the 95 % interval of the mean NEES over the seeds.
+/// Whether the covariance of an algorithm is consistent, by the 95 % interval of the mean NEES over the seeds.
 enum class Trust {
-  unknown,      ///< fewer than five runs
-  right,        ///< the interval has 2 in it
-  unclear,      ///< so it has, but it reaches beyond 4: a few runs decide
-  too_sure,     ///< it lies above 2: the errors are larger than the algorithm says
-  too_careful,  ///< it lies below 2
+  unknown,        ///< fewer than five runs
+  consistent,     ///< the interval has 2 in it
+  unclear,        ///< so it has, but it reaches beyond 4: a few runs decide
+  overconfident,  ///< it lies above 2: the errors are larger than the algorithm says
+  conservative,   ///< it lies below 2
 };
 const char* trust_word(Trust trust);
 
@@ -56,7 +56,8 @@ class AlgorithmTable {
 
   const std::vector<AlgorithmCell>& cells() const { return cells_; }  ///< by world, then by algorithm
   const std::vector<AlgorithmPair>& pairs() const { return pairs_; }  ///< of all but the base of the study
-  /// Returns one sentence for each world: who has the smallest rms, its margin, and whether its covariance is right.
+  /// Returns one sentence for each world: who has the smallest rms, its margin, and whether its covariance is
+  /// consistent.
   std::vector<std::string> sentences() const;
 
   std::string text() const;

@@ -51,7 +51,7 @@ void StudyPlot::read(sim::ParamReader& in) {
   in.read("metrics", metrics, "metrics whose errors are drawn, instead of `figure`");
   in.read_references("cases", cases, "case", "those that are drawn; unset: all");
   in.read_choice("over", over, {{"cases", Over::cases}, {"distance", Over::distance}, {"time", Over::time}},
-                 "what errors are drawn over: distance travelled or time");
+                 "what errors are drawn over: distance traveled or time");
   if (in.describing()) return;
   require_something(in, "figure", figure.empty());
   require_something(in, "metrics", metrics.empty());

@@ -114,7 +114,7 @@ class StudyPainter {
     write_whole_file(directory_ + "/" + plot.name + ".dat", data);
     const bool distance = plot.over == StudyPlot::Over::distance;
     return fmt::format("{}set xlabel '{}'\nset ylabel 'error (m): median, 5 to 95 % of the runs'\n{}\nunset logscale y",
-                       axis_of_errors(reached_m), distance ? "distance travelled (m)" : "time (s)", plots);
+                       axis_of_errors(reached_m), distance ? "distance traveled (m)" : "time (s)", plots);
   }
 
   std::vector<Curve> curves(const StudyPlot& plot, const std::string& name, const std::string& metric) const {

@@ -39,7 +39,7 @@ class Walker {
   bool walk(const MessageSchema& schema, int depth = 0) {
     if (depth > max_depth) return fail("", "is nested deeper than " + std::to_string(max_depth));
     std::array<std::int64_t, 64>
-        lengths;  // lengths of the arrays of this type; not initialised, every element is set before use
+        lengths;  // lengths of the arrays of this type; not initialized, every element is set before use
     for (const Member& member : schema.members)
       if (!walk_member(member, lengths, depth)) return false;
     return true;

@@ -7,7 +7,7 @@
 
 #include "devices/motion/motion_player.hpp"
 #include "devices/motion/servo_bank.hpp"
-#include "experiment/optimise/cma_es.hpp"
+#include "experiment/optimize/cma_es.hpp"
 #include "motion/analysis/motion_check.hpp"
 #include "motion/analysis/motion_tracking.hpp"
 #include "sim/bus/in_process_bus.hpp"

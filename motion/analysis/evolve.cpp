@@ -4,15 +4,15 @@
 #include <algorithm>
 #include <utility>
 
-#include "experiment/optimise/cma_es.hpp"
-#include "experiment/optimise/genetic.hpp"
+#include "experiment/optimize/cma_es.hpp"
+#include "experiment/optimize/genetic.hpp"
 #include "sim/base/thread_pool.hpp"
 
 namespace tools {
 
 namespace {
 
-std::unique_ptr<Optimiser> optimiser_of(const EvolveOptions& options, const Point& start) {
+std::unique_ptr<Optimizer> optimizer_of(const EvolveOptions& options, const Point& start) {
   switch (options.method) {
     case SearchMethod::cma_es:
       return std::make_unique<CmaEs>(
@@ -47,7 +47,7 @@ Evolution::Evolution(const sim::WorldConfig& world, const std::string& vehicle, 
   Point point;
   for (const GaitNumber& number : gait_.numbers())
     point.push_back((number.start - number.low) / (number.high - number.low));
-  optimiser_ = optimiser_of(options, point);
+  optimizer_ = optimizer_of(options, point);
   std::vector<Candidate> start{candidate_at(point, 0)};
   try_all(start);
   start_ = best_ = best_of_generation_ = start.front();
@@ -117,7 +117,7 @@ void Evolution::choose_first_world(const std::vector<Candidate>& candidates) {
 bool Evolution::advance() {
   if (tried_ + options_.population > options_.candidates) return false;
   std::vector<Candidate> candidates;
-  for (const Point& point : optimiser_->propose()) candidates.push_back(candidate_at(point, ++tried_));
+  for (const Point& point : optimizer_->propose()) candidates.push_back(candidate_at(point, ++tried_));
   try_all(candidates);
   // The others come after those that walked in all worlds.
   double least_mps = 1e9;
@@ -126,7 +126,7 @@ bool Evolution::advance() {
   std::vector<double> values;
   for (const Candidate& candidate : candidates)
     values.push_back(candidate.is_complete() ? candidate.value_mps : std::min(candidate.value_mps, least_mps - 1e-6));
-  optimiser_->learn(values);
+  optimizer_->learn(values);
   best_of_generation_ = candidates[by_rank(values).front()];
   if (best_of_generation_.value_mps > best_.value_mps) best_ = best_of_generation_;
   choose_first_world(candidates);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "experiment/optimise/optimiser.hpp"
+#include "experiment/optimize/optimizer.hpp"
 #include "motion/analysis/perturbed_world.hpp"
 #include "motion/analysis/walk.hpp"
 #include "motion/gait/gait_family.hpp"
@@ -79,7 +79,7 @@ class Evolution {
   sim::WorldConfig world_;
   std::vector<Perturbation> perturbations_;
   std::vector<sim::WorldConfig> worlds_;
-  std::unique_ptr<Optimiser> optimiser_;
+  std::unique_ptr<Optimizer> optimizer_;
   std::size_t first_world_ = 0;
   int tried_ = 0, walks_ = 0;
   Candidate start_, best_, best_of_generation_;

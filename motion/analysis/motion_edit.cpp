@@ -357,7 +357,7 @@ JointMotion retimed(const JointMotion& motion, double at_s, double to_s) {
   const double after_s = key == changed.keys.begin() ? -1 : std::prev(key)->at_s;
   const bool is_last = std::next(key) == changed.keys.end();
   if (to_s < 0 || to_s <= after_s || (!is_last && to_s >= std::next(key)->at_s))
-    throw EditError("a key stays between its neighbours, at " + sim::number_text(std::max(after_s, 0.0)) + " s" +
+    throw EditError("a key stays between its neighbors, at " + sim::number_text(std::max(after_s, 0.0)) + " s" +
                     (is_last ? "" : " and " + sim::number_text(std::next(key)->at_s) + " s") + ", got " +
                     sim::number_text(to_s));
   key->at_s = to_s;

@@ -45,7 +45,7 @@ sim::JointMotion with_mirrored_half(const sim::JointMotion& motion, const Mirror
 sim::JointMotion shifted(const sim::JointMotion& motion, double by_s, const std::vector<std::string>& joints);
 /// Multiplies all times.
 sim::JointMotion stretched(const sim::JointMotion& motion, double factor);
-/// Moves the key at a time, between its neighbours, to another time.
+/// Moves the key at a time, between its neighbors, to another time.
 sim::JointMotion retimed(const sim::JointMotion& motion, double at_s, double to_s);
 /// Replaces each value, at whole frames, by the mean over `window_s` around it.
 sim::JointMotion smoothed(const sim::JointMotion& motion, double window_s);

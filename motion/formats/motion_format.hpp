@@ -15,7 +15,7 @@ namespace tools {
 /// What a file does not keep of a motion, or a motion of a file: one sentence each.
 using Losses = std::vector<std::string>;
 
-enum class SkillKind { posture, gait, behaviour };
+enum class SkillKind { posture, gait, behavior };
 
 /// Choices of an export or import.
 struct FormatOptions {
@@ -24,7 +24,7 @@ struct FormatOptions {
   std::optional<double> at_s;      ///< instant of a posture; unset: the only one
   std::string creator = "Shoal";   ///< of an MTN file
   std::string design;              ///< design label of an MTN file; empty: that of the names of joints
-  double row_s = 0.02;             ///< time of a row of a gait, and of a step between two rows of a behaviour
+  double row_s = 0.02;             ///< time of a row of a gait, and of a step between two rows of a behavior
   std::optional<SkillKind> skill;  ///< unset: by the motion
 };
 

@@ -38,7 +38,7 @@ class SkillMotion {
     else if (skill_.period > 1)
       read_gait();
     else
-      read_behaviour();
+      read_behavior();
     if (skill_.roll_deg != 0 || skill_.pitch_deg != 0) losses_.push_back("the expected roll and pitch are not kept");
     if (skill_.period != 1)
       losses_.push_back("how long a row or step takes is not in the file: " +
@@ -80,14 +80,13 @@ class SkillMotion {
     std::vector<const SkillRow*> rows;
     int repeats = skill_.loop_count >= 0 && skill_.loop_count < 2 ? 0 : skill_.loop_count - 1;
     if (repeats < 0) {
-      losses_.push_back("the endless loop of the behaviour is written once");
+      losses_.push_back("the endless loop of the behavior is written once");
       repeats = 0;
     } else if (repeats > 0) {
-      losses_.push_back("the loop of the behaviour is written " + std::to_string(repeats + 1) + " times");
+      losses_.push_back("the loop of the behavior is written " + std::to_string(repeats + 1) + " times");
     }
     for (int i = 0; i < static_cast<int>(skill_.rows.size()); ++i) {
-      if (rows.size() == max_unrolled_rows)
-        throw sim::ConfigError({source_.file + ": the behaviour has too many rows"});
+      if (rows.size() == max_unrolled_rows) throw sim::ConfigError({source_.file + ": the behavior has too many rows"});
       rows.push_back(&skill_.rows[static_cast<std::size_t>(i)]);
       if (repeats > 0 && i != 0 && i == skill_.loop_last) {
         i = skill_.loop_first - 1;
@@ -97,7 +96,7 @@ class SkillMotion {
     return rows;
   }
 
-  void read_behaviour() {
+  void read_behavior() {
     double at_s = 0;
     bool has_trigger = false;
     const SkillRow* before = nullptr;
@@ -114,8 +113,7 @@ class SkillMotion {
         at_s += row->delay * skill_delay_s;
         add_key(at_s, *row, sim::Easing::linear);
       }
-      if (at_s > sim::max_motion_s)
-        throw sim::ConfigError({source_.file + ": the behaviour must last at most 86400 s"});
+      if (at_s > sim::max_motion_s) throw sim::ConfigError({source_.file + ": the behavior must last at most 86400 s"});
       before = row;
     }
     if (has_trigger) losses_.push_back("rows do not wait for their trigger angle");

@@ -8,7 +8,7 @@
 
 namespace tools {
 
-// A gait is repeated, one row after the other.  Between two rows of a behaviour all joints move on a cosine, in as many
+// A gait is repeated, one row after the other.  Between two rows of a behavior all joints move on a cosine, in as many
 // steps as the joint with the longest way needs at the speed of the row; how long a step takes is not in the file.
 
 constexpr double skill_delay_s = 0.05;  ///< unit of the delay after a row

@@ -54,7 +54,7 @@ class SkillWriter {
   std::string write() {
     const SkillKind kind = options_.skill.value_or(motion_.end_s() <= 0 || options_.at_s ? SkillKind::posture
                                                    : motion_.loop                        ? SkillKind::gait
-                                                                                         : SkillKind::behaviour);
+                                                                                         : SkillKind::behavior);
     list_losses(motion_, {.loop = kind == SkillKind::gait}, losses_);
     skill_.name = motion_name(options_.name.empty() ? motion_.name : options_.name);
     std::replace(skill_.name.begin(), skill_.name.end(), '-', '_');
@@ -67,8 +67,8 @@ class SkillWriter {
       case SkillKind::gait:
         make_gait();
         break;
-      case SkillKind::behaviour:
-        make_behaviour();
+      case SkillKind::behavior:
+        make_behavior();
         break;
     }
     list_rounding();
@@ -140,7 +140,7 @@ class SkillWriter {
       losses_.push_back("a gait has only joints 8 to 15: left out are " + sim::list_text(left_out));
   }
 
-  void make_behaviour() {
+  void make_behavior() {
     double written_s = 0;
     for (std::size_t i = 0; i < table_.rows.size(); ++i) {
       SkillRow row = row_of(table_.rows[i]);
@@ -151,11 +151,11 @@ class SkillWriter {
       const double duration_s = table_.times_s[i] - table_.times_s[i - 1];
       const int distance = distance_between(skill_.rows.back(), row);
       written_s += distance == 0 ? wait(duration_s, row) : move(duration_s, distance, row);
-      if (skill_.rows.size() > max_rows) refuse_motion(motion_, "a behaviour must have at most 127 rows");
+      if (skill_.rows.size() > max_rows) refuse_motion(motion_, "a behavior must have at most 127 rows");
     }
     skill_.period = -static_cast<int>(skill_.rows.size());
     if (std::abs(written_s - motion_.end_s()) > 1e-6)
-      losses_.push_back("the behaviour lasts " + sim::number_text(written_s) + " s instead of " +
+      losses_.push_back("the behavior lasts " + sim::number_text(written_s) + " s instead of " +
                         sim::number_text(motion_.end_s()) + " s, with steps of " +
                         sim::number_text(options_.row_s * 1000) + " ms (--row-ms)");
     for (const sim::MotionTrack& track : tracks_)
@@ -183,7 +183,7 @@ class SkillWriter {
       last.delay += taken;
       left -= taken;
       if (left > 0) skill_.rows.push_back(row);
-      if (skill_.rows.size() > max_rows) refuse_motion(motion_, "a behaviour must have at most 127 rows");
+      if (skill_.rows.size() > max_rows) refuse_motion(motion_, "a behavior must have at most 127 rows");
     }
     return delay * skill_delay_s;
   }

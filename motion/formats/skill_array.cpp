@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t max_bytes = 16'000'000;
 constexpr std::size_t max_numbers = 7 + 128 * 20;
-constexpr int behaviour_columns = skill_joints + 4;
+constexpr int behavior_columns = skill_joints + 4;
 
 struct Number {
   int value = 0;
@@ -182,7 +182,7 @@ class SkillReader {
 
   /// A gait has the 8 or 12 last joints.
   static std::size_t columns_of(int period, std::size_t numbers) {
-    if (period < 0) return behaviour_columns;
+    if (period < 0) return behavior_columns;
     if (period == 1) return skill_joints;
     constexpr std::size_t of_legs = 8, with_shoulders = 12;
     return numbers == static_cast<std::size_t>(period) * with_shoulders ? with_shoulders : of_legs;
@@ -193,7 +193,7 @@ class SkillReader {
     const std::size_t angles = std::min<std::size_t>(columns, skill_joints);
     for (std::size_t j = 0; j < angles; ++j)
       row.angles_deg[static_cast<std::size_t>(skill.first_joint) + j] = list_.numbers[begin + j].value * ratio_;
-    if (columns != behaviour_columns) return;
+    if (columns != behavior_columns) return;
     row.speed = std::max(0, list_.numbers[begin + skill_joints].value);
     row.delay = std::abs(list_.numbers[begin + skill_joints + 1].value);
     row.trigger_axis = list_.numbers[begin + skill_joints + 2].value;
@@ -231,7 +231,7 @@ std::string skill_text(const SkillArray& skill) {
   for (const SkillRow& row : skill.rows)
     for (const int angle : row.angles_deg) largest = std::max(largest, std::abs(angle));
   const int ratio = largest > 127 ? 2 : 1;
-  const char* const kind = skill.period == 1 ? "posture" : skill.period > 1 ? "gait" : "behaviour";
+  const char* const kind = skill.period == 1 ? "posture" : skill.period > 1 ? "gait" : "behavior";
   std::string text = "// " + std::string(kind) + " of OpenCat, " + std::to_string(std::abs(skill.period)) +
                      (std::abs(skill.period) == 1 ? " row" : " rows") + "\nconst int8_t " + skill.name +
                      "[] PROGMEM = {\n  " + std::to_string(skill.period) + ", " + std::to_string(skill.roll_deg) +

@@ -12,7 +12,7 @@ class HalfEllipse final : public GaitFamily {
  public:
   enum Number : std::size_t {
     front_height,  ///< height of the front arcs, m
-    front_x,       ///< centre of the front loci, from straight below the hip, m
+    front_x,       ///< center of the front loci, from straight below the hip, m
     front_y,       ///< outwards
     rear_height,
     rear_x,
@@ -33,7 +33,7 @@ class HalfEllipse final : public GaitFamily {
   double frame_s() const { return frame_s_; }
   /// Returns the number of frames of a period, which is even.
   int frames(std::span<const double> values) const;
-  /// Returns the desired centre of a foot in the vehicle frame at its phase, from 0 to 1.
+  /// Returns the desired center of a foot in the vehicle frame at its phase, from 0 to 1.
   static sim::Vector3d foot_at(std::span<const double> values, const Leg& leg, double phase);
 
  private:

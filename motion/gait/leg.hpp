@@ -30,9 +30,9 @@ struct Leg {
   double swing_sign = 1, flap_sign = 1, knee_sign = 1;
   LegJointLimits swing_limits, flap_limits, knee_limits;
 
-  /// Returns the centre of the foot in the vehicle frame.
+  /// Returns the center of the foot in the vehicle frame.
   sim::Vector3d foot_at(const LegPosture& posture) const;
-  /// Returns the posture with the centre of the foot at a point in the vehicle frame: the knee turned in its positive
+  /// Returns the posture with the center of the foot at a point in the vehicle frame: the knee turned in its positive
   /// direction, the leg below the hip.  A point out of reach: the foot is as near as possible on the line from the hip.
   LegPosture posture_at(const sim::Vector3d& foot_V) const;
 };

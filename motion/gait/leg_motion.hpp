@@ -17,7 +17,7 @@ enum class CourseLimit {
   speed   ///< to their ranges and speeds
 };
 
-/// Returns the values with differences between neighbours of at most `step`, the last and the first being neighbours
+/// Returns the values with differences between neighbors of at most `step`, the last and the first being neighbors
 /// too: midway between the highest such course below them and the lowest one above.
 std::vector<double> with_limited_steps(const std::vector<double>& values, double step);
 

@@ -14,7 +14,7 @@ using std::numbers::pi;
 constexpr double ers7_reach_m = 0.14809;  // of a front leg
 // Measured by rUNSWift (2005), from the knee at zero of the joint, forward and up: the arc of the forearm, and the
 // point of the rear leg that touches the ground.
-const sim::Vector3d arc_centre_m(0.040, 0, -0.040);
+const sim::Vector3d arc_center_m(0.040, 0, -0.040);
 constexpr double arc_radius_m = 0.065;
 const sim::Vector3d toe_m(0.035, 0, -0.050);
 constexpr double hip_distance_m = 0.130;
@@ -62,8 +62,8 @@ Skelliptical::Skelliptical(const sim::VehicleConfig& vehicle)
   length("thrust_m", thrust, 0, 0.015);
   length("canter_m", canter, -0.010, 0.010);
   length("side_offset_m", side_offset, -0.010, 0.010);
-  length("turn_centre_x_m", turn_centre_x, -0.100, 0.100);
-  length("turn_centre_y_m", turn_centre_y, -0.100, 0.100);
+  length("turn_centre_x_m", turn_center_x, -0.100, 0.100);
+  length("turn_centre_y_m", turn_center_y, -0.100, 0.100);
   length("front_side_body_height_m", front_side_body_height, 0.060, 0.130);
   share("front_stride_ratio", front_stride_ratio, 0.5, 1.5);
   share("front_side_ratio", front_side_ratio, 0.5, 1.5);
@@ -108,7 +108,7 @@ Leg Skelliptical::with_contact(const Leg& leg, double arc_rad) const {
   const sim::Vector3d aside(0, leg.foot.y() - leg.knee.y(), 0);
   sim::Vector3d point_m = toe_m;
   // A positive angle is further up on the arc.
-  if (is_front(leg)) point_m = arc_centre_m + arc_radius_m * sim::Vector3d(-std::cos(arc_rad), 0, std::sin(arc_rad));
+  if (is_front(leg)) point_m = arc_center_m + arc_radius_m * sim::Vector3d(-std::cos(arc_rad), 0, std::sin(arc_rad));
   standing.foot = leg.knee + scale_ * point_m + aside;
   standing.foot_radius_m = 0;
   return standing;
@@ -125,20 +125,20 @@ LegPosture Skelliptical::posture_at(std::span<const double> values, const GaitSt
   const double tilt_rad =
       std::asin(std::clamp((values[rear_body_height] - front_height_m) / (scale_ * hip_distance_m), -1.0, 1.0));
   const double hip_x_m = scale_ * hip_distance_m * std::cos(tilt_rad) / 2;
-  // The middle of the ground stroke, from the centre of the turn, level; y to the left.
+  // The middle of the ground stroke, from the center of the turn, level; y to the left.
   const double x_m = of_leg(values, front, front_x, rear_x), y_m = of_leg(values, front, front_y, rear_y);
-  const double from_centre_x_m = (front ? hip_x_m : -hip_x_m) + x_m - values[turn_centre_x];
-  const double from_centre_y_m = leg.foot.y() + side * y_m - values[turn_centre_y];
+  const double from_center_x_m = (front ? hip_x_m : -hip_x_m) + x_m - values[turn_center_x];
+  const double from_center_y_m = leg.foot.y() + side * y_m - values[turn_center_y];
   const double turn_m = std::abs(step.turn_rad) * std::hypot(hip_x_m + values[front_x], leg.foot.y());
   const double all_m = straight_m + sideways_m + turn_m;
   const double forward = all_m > 0 ? straight_m / all_m : 1;
-  // The stroke, along and turned about the centre.
+  // The stroke, along and turned about the center.
   const Stroke stroke = stroke_at(values, front, phase);
   const double turn_rad = stroke.along * step.turn_rad;
   double forward_m =
-      stroke.along * step.forward_m + from_centre_x_m * (std::cos(turn_rad) - 1) - from_centre_y_m * std::sin(turn_rad);
+      stroke.along * step.forward_m + from_center_x_m * (std::cos(turn_rad) - 1) - from_center_y_m * std::sin(turn_rad);
   double left_m =
-      stroke.along * step.left_m + from_centre_x_m * std::sin(turn_rad) + from_centre_y_m * (std::cos(turn_rad) - 1);
+      stroke.along * step.left_m + from_center_x_m * std::sin(turn_rad) + from_center_y_m * (std::cos(turn_rad) - 1);
   double arc_rad = values[front_contact];
   if (front) {
     forward_m *= values[front_stride_ratio];

@@ -46,8 +46,8 @@ class Skelliptical final : public GaitFamily {
     thrust,  ///< how far a foot pushes down at the end of its ground stroke, m
     canter,  ///< amplitude of up and down of the body, twice a period, m
     side_offset,
-    turn_centre_x,  ///< from the middle of the hips, m
-    turn_centre_y,
+    turn_center_x,  ///< from the middle of the hips, m
+    turn_center_y,
     front_side_body_height,  ///< as front_body_height, when it walks sideways
     front_stride_ratio,      ///< stride of the front legs over that of the rear legs
     front_side_ratio,

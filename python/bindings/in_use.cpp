@@ -20,7 +20,7 @@ bool Guarded::is_ours() const {
 }
 
 void Guarded::require_made() const {
-  if (process_ == 0) throw Error("the object was not initialised");
+  if (process_ == 0) throw Error("the object was not initialized");
 }
 
 Guarded::Use::Use(Guarded& object) : object_(object) {

@@ -64,7 +64,7 @@ class Subscription : public ZeroedMemory {
 
  private:
   void require_made() const {
-    if (!world_) throw Error("the object was not initialised");
+    if (!world_) throw Error("the object was not initialized");
   }
 
   const std::shared_ptr<World> world_;  // the mailbox may not outlive its bus

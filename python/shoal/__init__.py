@@ -10,7 +10,7 @@ results    tracks and errors of a results folder; plots draws them
 vector     many worlds at once, with the interfaces of Gymnasium and PettingZoo
 Error      what all of these raise for input that they refuse
 
-Distances are in metres, angles in radians, times in seconds, unless a name says otherwise (`utime` is in microseconds).
+Distances are in meters, angles in radians, times in seconds, unless a name says otherwise (`utime` is in microseconds).
 World axes are east, north, up; vehicle axes are forward, left, up.
 """
 import os as _os

@@ -78,7 +78,7 @@ def errors(folder: Folder, metrics: str | Sequence[str] | None = None, axes: Axe
 
 def nees(folder: Folder, metrics: str | Sequence[str] | None = None, axes: Axes | None = None,
          dimensions: int = 2) -> Axes:
-    """Draws the normalised estimation error squared against time, with the 95 % interval of a consistent filter.
+    """Draws the normalized estimation error squared against time, with the 95 % interval of a consistent filter.
 
     dimensions: number of coordinates of the estimate; the interval is that of chi-square with as many degrees of
         freedom (Bar-Shalom, Li, Kirubarajan, Estimation with Applications to Tracking and Navigation, 2001, section

@@ -78,8 +78,8 @@ def errors(folder: Folder) -> Table:
     error_m: distance between estimate and truth
     estimate_x_m, estimate_y_m, estimate_z_m: estimate in world axes
     truth_x_m, truth_y_m, truth_z_m: truth in world axes
-    travelled_m: distance that the vehicle has travelled
+    travelled_m: distance that the vehicle has traveled
     sigma_m: standard deviation that the estimate claims; NaN: it gave none
-    nees: normalised estimation error squared; NaN: there is none
+    nees: normalized estimation error squared; NaN: there is none
     """
     return _table(_columns(_file_of(folder, 'errors.csv')))

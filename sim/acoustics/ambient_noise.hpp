@@ -18,7 +18,7 @@ struct AmbientNoise {
 
   /// Spectral level, dB re 1 uPa^2/Hz.  frequency_kHz > 0.
   Decibels spectral_level(double frequency_kHz) const;
-  /// Level in the band about the centre, dB re 1 uPa: integral of the spectrum.  The band is cut at 1 Hz.
+  /// Level in the band about the center, dB re 1 uPa: integral of the spectrum.  The band is cut at 1 Hz.
   Decibels band_level(double centre_Hz, double bandwidth_Hz) const;
 };
 

@@ -18,9 +18,9 @@ namespace {
 constexpr double early = 0.02;
 /// The same for rays, which may be faster than the straight line through slow water.
 constexpr double early_ray = 0.06;
-/// Validity of the list of neighbours, and the distance that no transducer moves farther in this time or while a sound
+/// Validity of the list of neighbors, and the distance that no transducer moves farther in this time or while a sound
 /// travels.
-constexpr double neighbours_hold_s = 1;
+constexpr double neighbors_hold_s = 1;
 constexpr double stray_m = 150;
 /// Interval of the checks of active senders and receivers.
 constexpr Time watch_period{100'000};
@@ -102,7 +102,7 @@ void AcousticChannel::discard_messages_for(const Audience& removed) {
 }
 
 void AcousticChannel::discard_places() {
-  neighbours_age_ = -1;
+  neighbors_age_ = -1;
 }
 
 void AcousticChannel::clear_receivers() {
@@ -335,8 +335,8 @@ void AcousticChannel::emit(int number, Time now) {
   drop_receptions(*from, SignalLoss::half_duplex);
 
   // Send to each transducer in audible range.
-  const double reach_m = update_neighbours(sending.signal, now) + stray_m;
-  neighbours_.near(sending.p_W, reach_m, near_);
+  const double reach_m = update_neighbors(sending.signal, now) + stray_m;
+  neighbors_.near(sending.p_W, reach_m, near_);
   examined_ += static_cast<std::int64_t>(near_.size());
   for (const int listener : near_) {
     Transducer* to = transducers_[static_cast<std::size_t>(listener)];
@@ -349,9 +349,9 @@ void AcousticChannel::emit(int number, Time now) {
   release(number);
 }
 
-double AcousticChannel::update_neighbours(const Signal& signal, Time now) {
-  const bool anew = neighbours_age_ < 0 || to_seconds(now) - neighbours_age_ > neighbours_hold_s;
-  std::vector<Neighbourhood::Member> members;
+double AcousticChannel::update_neighbors(const Signal& signal, Time now) {
+  const bool anew = neighbors_age_ < 0 || to_seconds(now) - neighbors_age_ > neighbors_hold_s;
+  std::vector<Neighborhood::Member> members;
   // Collect the positions of all transducers.
   if (anew) {
     lowest_m_ = std::numeric_limits<double>::infinity();
@@ -361,11 +361,11 @@ double AcousticChannel::update_neighbours(const Signal& signal, Time now) {
       lowest_m_ = std::min(lowest_m_, members.back().p_W.z());
     }
     examined_ += static_cast<std::int64_t>(transducers_.size());
-    neighbours_age_ = to_seconds(now);
+    neighbors_age_ = to_seconds(now);
   }
   const double deepest_m = around_.medium.highest_surface_m() - lowest_m_ + stray_m;
   const double reach_m = propagation_.audible_range_m(signal, min_level(signal.centre_Hz), deepest_m);
-  if (anew) neighbours_.build(members, reach_m);
+  if (anew) neighbors_.build(members, reach_m);
   return reach_m;
 }
 

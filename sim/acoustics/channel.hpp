@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "sim/acoustics/acoustics_config.hpp"
-#include "sim/acoustics/neighbourhood.hpp"
+#include "sim/acoustics/neighborhood.hpp"
 #include "sim/acoustics/propagation.hpp"
 #include "sim/acoustics/signal.hpp"
 #include "sim/acoustics/sound_observer.hpp"
@@ -63,9 +63,9 @@ class AcousticChannel {
   bool handle_deferred(Time until, Time now, ThreadPool* threads);
   /// Sets an observer of all signals; null: none.  It must outlive the channel or be removed.
   void set_observer(SoundObserver* observer) { observer_ = observer; }
-  /// Discards the list of neighbours.  Call after a transducer was moved.
+  /// Discards the list of neighbors.  Call after a transducer was moved.
   void discard_places();
-  /// Discards the minimum signal levels and the list of neighbours.  Call after a receiver changed.
+  /// Discards the minimum signal levels and the list of neighbors.  Call after a receiver changed.
   void clear_receivers();
   /// Number of messages sent to this address, since the last transducer with it was removed, or to its whole group
   /// since the start.
@@ -199,8 +199,8 @@ class AcousticChannel {
   void fetch_ahead() const;
   void emit(int sending, Time now);
   void send_to(int sending, Transducer& to);
-  /// Updates the neighbours when they are outdated, for the audible range of this signal.  Returns that range, m.
-  double update_neighbours(const Signal& signal, Time now);
+  /// Updates the neighbors when they are outdated, for the audible range of this signal.  Returns that range, m.
+  double update_neighbors(const Signal& signal, Time now);
   void end_emission(int sending, Time at);
   /// Ends a transmission early.
   void cut(int sending, SignalLoss why, Time at);
@@ -284,8 +284,8 @@ class AcousticChannel {
   std::uint32_t joins_ = 0;
   std::int64_t polls_ = 0;
   bool handling_ = false;
-  Neighbourhood neighbours_;
-  double neighbours_age_ = -1;                                           // time of the last search, s; negative: none
+  Neighborhood neighbors_;
+  double neighbors_age_ = -1;                                            // time of the last search, s; negative: none
   double lowest_m_ = 0;                                                  // z of the lowest transducer at that time
   std::map<std::string, std::map<std::string, std::int64_t>> messages_;  // sent, by group and address
   mutable std::vector<std::pair<double, Decibels>> min_levels_;          // cache by frequency

@@ -26,7 +26,7 @@ PowerRatio AcousticChannel::noise_at(const Transducer& to, const Vector3d& p_W, 
     if (!sound->on_ || !sound->site_.powered || sound->site_.faults.silent()) continue;
     const Vector3d from_W = sound->site_.body.X_WB() * sound->site_.X_BS.translation();
     if (!around_.medium.in_water(from_W)) continue;
-    const double f = sound->centre_Hz_, half_Hz = sound->bandwidth_Hz_ / 2;
+    const double f = sound->center_Hz_, half_Hz = sound->bandwidth_Hz_ / 2;
     const double low_Hz = std::max(f - half_Hz, signal.centre_Hz - signal.bandwidth_Hz / 2);
     const double high_Hz = std::min(f + half_Hz, signal.centre_Hz + signal.bandwidth_Hz / 2);
     if (high_Hz <= low_Hz) continue;

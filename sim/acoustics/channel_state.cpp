@@ -84,8 +84,8 @@ void AcousticChannel::visit_state(StateArchive& archive) {
     for (const auto& sending : sendings_)
       propagation_.ambient_level(sending->signal.centre_Hz, sending->signal.bandwidth_Hz);
   }
-  // Free lists, neighbours and counts.
-  archive.unhashed(free_sendings_, free_flights_, flights_made_, step_end_, neighbours_, neighbours_age_);
+  // Free lists, neighbors and counts.
+  archive.unhashed(free_sendings_, free_flights_, flights_made_, step_end_, neighbors_, neighbors_age_);
   if (!archive.hashing()) archive.not_only_finite(lowest_m_);  // infinity: without a receiver
   archive.unhashed(messages_, watching_, removed_, shadow_losses_);
   if (archive.restoring()) check_numbers(archive);
@@ -166,9 +166,8 @@ void AcousticChannel::check_numbers(const StateArchive& archive) const {
     if (!in_range || !each->receiver_.flights_are_below(flights_.size())) fail_for_signal(archive);
   }
   // Numbers of removed transducers stay in the list until it is rebuilt, which a negative age requests.
-  const bool in_use_now = !(neighbours_age_ < 0);
-  if (in_use_now && !neighbours_.numbers_are_below(transducers_.size()))
-    archive.fail("a neighbour that does not exist");
+  const bool in_use_now = !(neighbors_age_ < 0);
+  if (in_use_now && !neighbors_.numbers_are_below(transducers_.size())) archive.fail("a neighbor that does not exist");
 }
 
 /// Checks that each signal in use has exactly the events and flights that it counts, and each flight one event;

@@ -100,7 +100,7 @@ Decibels Transducer::noise_reduction(double frequency_Hz) const {
 }
 
 ContinuousSound::ContinuousSound(Decibels source_level, double centre_Hz, double bandwidth_Hz, SoundSite site)
-    : site_(std::move(site)), source_level_(source_level), centre_Hz_(centre_Hz), bandwidth_Hz_(bandwidth_Hz) {
+    : site_(std::move(site)), source_level_(source_level), center_Hz_(centre_Hz), bandwidth_Hz_(bandwidth_Hz) {
   site_.channel.join(*this);
 }
 

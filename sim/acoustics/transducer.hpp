@@ -160,7 +160,7 @@ class ContinuousSound {
 
   const SoundSite site_;
   Decibels source_level_;
-  double centre_Hz_, bandwidth_Hz_;
+  double center_Hz_, bandwidth_Hz_;
   bool on_ = true;
 };
 

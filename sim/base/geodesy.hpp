@@ -14,7 +14,7 @@ struct GeodeticPosition {
   double height_m = 0;  ///< above the ellipsoid
 };
 
-/// Local east-north-up (ENU) coordinates about an origin, converted through earth-centred coordinates with
+/// Local east-north-up (ENU) coordinates about an origin, converted through earth-centered coordinates with
 /// GeographicLib.
 class Geodesy {
  public:

@@ -39,9 +39,9 @@ bool can_move_cursor(int file_descriptor) {
   return isatty(file_descriptor) != 0 && terminal != nullptr && std::string_view(terminal) != "dumb";
 }
 
-bool may_use_colour(int file_descriptor) {
-  const char* no_colour = std::getenv("NO_COLOR");
-  return can_move_cursor(file_descriptor) && (no_colour == nullptr || *no_colour == '\0');
+bool may_use_color(int file_descriptor) {
+  const char* no_color = std::getenv("NO_COLOR");
+  return can_move_cursor(file_descriptor) && (no_color == nullptr || *no_color == '\0');
 }
 
 std::size_t column_count(std::string_view text) {

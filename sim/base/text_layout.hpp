@@ -15,8 +15,8 @@ int text_columns(int file_descriptor);
 /// Returns true for a terminal that executes escape codes: not for a pipe, and not with TERM=dumb.
 bool can_move_cursor(int file_descriptor);
 
-/// Returns true when escape codes for colours may be written: as above, and NO_COLOR is unset or empty.
-bool may_use_colour(int file_descriptor);
+/// Returns true when escape codes for colors may be written: as above, and NO_COLOR is unset or empty.
+bool may_use_color(int file_descriptor);
 
 /// Returns the number of characters of UTF-8 text; every character counts as one column.
 std::size_t column_count(std::string_view text);

@@ -17,7 +17,7 @@ using Vector2d = Eigen::Vector2d;
 ///
 /// The camera looks along +x of the sensor frame S, +y is to the left and +z is up.  Image
 /// coordinates (u, v) are in pixels from the outer corner of the first pixel, u to the right, v downwards.  The pixel
-/// in column i and row j has its centre at (i + 0.5, j + 0.5).  OpenCV counts from the centre of the first pixel, so
+/// in column i and row j has its center at (i + 0.5, j + 0.5).  OpenCV counts from the center of the first pixel, so
 /// its principal point is smaller by 0.5.
 ///
 /// Distortion models: Brown-Conrady (Brown 1971) for the pinhole, Kannala-Brandt (2006) for the fisheye, both with the
@@ -32,7 +32,7 @@ struct OpticsConfig {
   Lens lens = Lens::pinhole;
   double fov_rad = degrees_to_radians(45);         ///< horizontal field of view without distortion
   std::vector<double> focal_px;                    ///< fx and fy, or one value for both; empty: from fov_rad
-  std::vector<double> principal_px;                ///< principal point; empty: centre of the image
+  std::vector<double> principal_px;                ///< principal point; empty: center of the image
   std::vector<double> distortion;                  ///< pinhole: k1, k2, p1, p2, k3; fisheye: k1 to k4; OpenCV's order
   double max_angle_rad = degrees_to_radians(180);  ///< fisheye: pixels at a larger angle to the axis are empty
 
@@ -87,7 +87,7 @@ class Optics {
 struct PixelRays {
   int width = 0, height = 0;  ///< size of the image in pixels
   int per_side = 1;           ///< rays per pixel along u and along v
-  float pixel_angle = 0;      ///< angle between neighbouring rays at the centre of the image, rad
+  float pixel_angle = 0;      ///< angle between neighboring rays at the center of the image, rad
   /// Unit vectors row by row, width * per_side in each row.  A zero vector marks a pixel outside the field of view.
   std::vector<Eigen::Vector3f> directions_S;
 

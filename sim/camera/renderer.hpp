@@ -98,7 +98,7 @@ class Renderer {
   void add_surfaces();
   /// Renders a row of tiles of `wide` x `high` pixels, from `row` on.
   void render_tiles(const Pose& X_WS, int row, int high, int wide, float weight, Frame& frame) const;
-  /// Returns the inverse pose of a part, cached because neighbouring pixels mostly hit the same part.
+  /// Returns the inverse pose of a part, cached because neighboring pixels mostly hit the same part.
   const Pose& X_PW(Tile& tile, int part) const;
   /// Returns the look of a material on a part, cached as its pose is.
   const Paint& paint(Tile& tile, int part, int material) const;

@@ -53,7 +53,7 @@ struct Constants {
 };
 
 /// Daylight that the water scatters into a ray: integral of scattering times what is left of the light, over the path.
-/// `source`: per metre at its start.
+/// `source`: per meter at its start.
 SHOAL_INLINE float veil(const Constants& water, int color, float source, float down, float path_m) {
   const float rate = larger(water.attenuation[color] + down * water.downward[color], 1e-4F);
   return source * (1 - exponential(-rate * path_m)) / rate;

@@ -25,7 +25,7 @@ struct WaterRays {
 struct WaterLight {
   LinearColor attenuation = LinearColor::Zero();  ///< of a beam, 1/m
   LinearColor downward = LinearColor::Zero();     ///< of daylight with depth, 1/m
-  LinearColor at_surface = LinearColor::Zero();   ///< daylight scattered per metre at the surface
+  LinearColor at_surface = LinearColor::Zero();   ///< daylight scattered per meter at the surface
   LinearColor at_eye = LinearColor::Zero();       ///< and at the camera
   LinearColor sun = LinearColor::Zero();          ///< above the water
   float wind_slope = 0;                           ///< mean square slope of ripples

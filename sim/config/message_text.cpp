@@ -59,7 +59,7 @@ std::string escaped(unsigned char c) {
   return text;
 }
 
-/// Returns the edit distance: number of letters added, removed, changed or swapped with their neighbour.
+/// Returns the edit distance: number of letters added, removed, changed or swapped with their neighbor.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   std::iota(last.begin(), last.end(), 0);

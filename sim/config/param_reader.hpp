@@ -97,7 +97,7 @@ class ParamReader {
   void read_choice(const char* key, Enum& value, const std::type_identity_t<ChoiceWords<Enum>>& words,
                    std::span<const std::type_identity_t<Enum>> allowed, const char* meaning);
   /// Reads one name of a list that is known only at run time or selects a row of a table: registered types, presets.  A
-  /// word that selects program behaviour belongs to an enum, see read_choice.
+  /// word that selects program behavior belongs to an enum, see read_choice.
   void read_one_of(const char* key, std::string& value, const std::vector<std::string>& names, const char* meaning);
   /// Reads a name that must have been declared by `declare(kind, name)`.  Empty (the default) means none.
   void read_reference(const char* key, std::string& value, const char* kind, const char* meaning);

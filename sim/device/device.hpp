@@ -73,7 +73,7 @@ class Sensor {
   virtual void sweep(const SweepContext& /*context*/) {}
   /// Called after its vehicle was put elsewhere: a rate or a path from a place before to one after is none.
   virtual void displaced() {}
-  /// Adds the measurement errors to the reading in place: noise, quantisation.  Called once after every measure().
+  /// Adds the measurement errors to the reading in place: noise, quantization.  Called once after every measure().
   virtual void disturb(double dt_s, Random& random) = 0;
   /// Returns the approximate number of rays of a sample, which decides whether the work is shared among threads.
   virtual std::int64_t rays() const { return 0; }
@@ -145,7 +145,7 @@ struct ActContext {
   double effectiveness;  ///< available share of the effort: 1 healthy, 0 failed or without power
 };
 
-/// Behaviour of an actuator without valid commands: at an emergency stop, after a command timeout, after a power
+/// Behavior of an actuator without valid commands: at an emergency stop, after a command timeout, after a power
 /// failure.
 enum class SafeState {
   stop,   ///< neutral command: no speed, no thrust, rudder amidships

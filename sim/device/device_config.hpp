@@ -37,7 +37,7 @@ struct DeviceConfig {
   double power_W = 0;             ///< constant power drawn from the battery of the vehicle
   std::string channel;            ///< channel of the reports; empty: by the template of the world
   double watchdog_s = 0;          ///< actuator: a command older than this is stale; 0: never
-  SafeState safe{};               ///< actuator: behaviour without a valid command
+  SafeState safe{};               ///< actuator: behavior without a valid command
 
   const DeviceType* device_type = nullptr;     ///< the registered type; null when it is unknown
   std::shared_ptr<const DeviceParams> params;  ///< the keys of the type

@@ -78,7 +78,7 @@ class DeviceRegistry {
   /// Returns the registry of this process.
   static DeviceRegistry& instance();
   /// Registers a type.  A duplicate name is recorded as a problem, and the first type remains registered.  Never
-  /// throws, because static initialisers call this function and their exceptions would end the program.
+  /// throws, because static initializers call this function and their exceptions would end the program.
   void add(DeviceType type);
   /// Returns the registration problems since the last call.
   std::vector<std::string> take_problems();

@@ -44,8 +44,8 @@ std::vector<fs::path> plugin_directories() {
   return directories;
 }
 
-/// Reads the text of SHOAL_PLUGIN from the file, before the library is loaded: loading runs its initialisers, which may
-/// have undefined behaviour with another interface.
+/// Reads the text of SHOAL_PLUGIN from the file, before the library is loaded: loading runs its initializers, which may
+/// have undefined behavior with another interface.
 std::string info_in_file(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
@@ -73,20 +73,20 @@ std::string objection(const fs::path& path) {
   return {};
 }
 
-/// Prints an error before an exception in an initialiser of a library ends the program.
-std::string initialising;
+/// Prints an error before an exception in an initializer of a library ends the program.
+std::string initializing;
 [[noreturn]] void print_exception() {
-  std::string what = "an initialiser ended the program";
+  std::string what = "an initializer ended the program";
   if (const std::exception_ptr thrown = std::current_exception()) {
     try {
       std::rethrow_exception(thrown);
     } catch (const std::exception& error) {
-      what = std::string("an initialiser threw: ") + error.what();
+      what = std::string("an initializer threw: ") + error.what();
     } catch (...) {
-      what = "an initialiser threw an unknown exception";
+      what = "an initializer threw an unknown exception";
     }
   }
-  std::fprintf(stderr, "%s: %s\n", initialising.c_str(), printable(what).c_str());
+  std::fprintf(stderr, "%s: %s\n", initializing.c_str(), printable(what).c_str());
   std::_Exit(2);
 }
 
@@ -125,7 +125,7 @@ void load_plugin(const std::string& path, const SourcePlace& place, const std::s
   for (const LoadedPlugin& plugin : loaded_plugins())
     if (plugin.path == canonical) return;
   std::string problem = objection(canonical);
-  initialising = place.text() + (who.empty() ? "" : ": " + who);
+  initializing = place.text() + (who.empty() ? "" : ": " + who);
   if (problem.empty()) problem = open_library(canonical);
   if (!problem.empty()) return diagnostics.error(place, who, problem);
   const std::vector<std::string> clashes = DeviceRegistry::instance().take_problems();

@@ -174,7 +174,7 @@ std::vector<ActionEntry> Script::parse_now(const ConfigNode& action, Diagnostics
   // Declare the names that actions may refer to.
   const WorldConfig& config = stage_.config();
   std::set<std::string> objects, movable;
-  for (const auto& [name, listed] : catalogue_) objects.insert(name);
+  for (const auto& [name, listed] : catalog_) objects.insert(name);
   for (const auto& [name, object] : stage_.entities().objects()) objects.insert(name);
   for (std::string& name : names_added_by(map)) objects.insert(std::move(name));
   movable = objects;
@@ -190,7 +190,7 @@ std::vector<ActionEntry> Script::parse_now(const ConfigNode& action, Diagnostics
 }
 
 void Script::run_now(const ConfigNode& action, Diagnostics& diagnostics) {
-  make_catalogue();
+  make_catalog();
   std::vector<ActionEntry> actions = parse_now(action, diagnostics);
   if (!diagnostics.ok()) return;
   const auto find = [this](const std::string& name) -> NamedDevice {

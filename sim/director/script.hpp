@@ -86,7 +86,7 @@ class Script {
   void fire(std::size_t event, int depth);
   void cut(EventState& event, const std::string& why);
   std::vector<ActionEntry> parse_now(const ConfigNode& action, Diagnostics& diagnostics) const;
-  void make_catalogue();
+  void make_catalog();
 
   Stage& stage_;
   Zones zones_;
@@ -97,9 +97,9 @@ class Script {
   std::vector<std::unique_ptr<ConditionWatch>> watches_;           ///< by event; null: no condition to watch
   std::map<std::pair<Time, std::uint64_t>, std::size_t> delayed_;  ///< (due time, order of scheduling) to event
   std::uint64_t next_delayed_ = 0;
-  int firings_ = 0;                                ///< in this step
-  std::map<std::string, ListedObject> catalogue_;  ///< objects that `add: NAME` can add
-  bool catalogued_ = false;
+  int firings_ = 0;                              ///< in this step
+  std::map<std::string, ListedObject> catalog_;  ///< objects that `add: NAME` can add
+  bool catalogd_ = false;
   Random live_random_;
   std::int64_t live_random_step_ = -1;
   int log_lines_ = 0;

@@ -39,26 +39,25 @@ void Script::command_actor(const std::string& actor, ActorCommand command) {
     if (each.config().name == actor) each.command(command, stage_.now());
 }
 
-void Script::make_catalogue() {
-  if (catalogued_) return;
-  catalogued_ = true;
+void Script::make_catalog() {
+  if (catalogd_) return;
+  catalogd_ = true;
   for (const ObjectConfig& object : stage_.config().objects) {
     const Pose X_WE = make_pose(object.position_m, object.rpy_rad);
     if (object.count == 1) {
-      catalogue_[object.name] = {&object, X_WE};
+      catalog_[object.name] = {&object, X_WE};
       continue;
     }
     const std::vector<Pose> poses = place_instances(object.placement, object.count, X_WE,
                                                     static_cast<std::uint64_t>(stage_.config().run.seed), object.name);
-    for (std::size_t i = 0; i < poses.size(); ++i)
-      catalogue_[object.name + std::to_string(i + 1)] = {&object, poses[i]};
+    for (std::size_t i = 0; i < poses.size(); ++i) catalog_[object.name + std::to_string(i + 1)] = {&object, poses[i]};
   }
 }
 
 const Script::ListedObject* Script::find_listed(const std::string& name) {
-  make_catalogue();
-  const auto found = catalogue_.find(name);
-  return found == catalogue_.end() ? nullptr : &found->second;
+  make_catalog();
+  const auto found = catalog_.find(name);
+  return found == catalog_.end() ? nullptr : &found->second;
 }
 
 void Script::log(const std::string& who, const std::string& text) {

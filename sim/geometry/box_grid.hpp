@@ -22,7 +22,7 @@ struct AlignedBox {
   }
 };
 
-/// Spatial index of boxes: a grid of square cells in the xy-plane.  Each box is stored once, in the cell of its centre;
+/// Spatial index of boxes: a grid of square cells in the xy-plane.  Each box is stored once, in the cell of its center;
 /// queries are enlarged by half the width of the largest box in the grid.  Boxes much larger than the median are stored
 /// in a separate list that every query examines.
 class BoxGrid {

@@ -34,7 +34,7 @@ void ZoneConfig::read(ParamReader& in) {
   in.read_name("name", name, "name of the zone, unique in the world");
   in.require("shape");
   in.read_choice("shape", shape, zone_shape_words, "shape of the region");
-  in.read("position_m", position_m, any_number(), "centre; polygon: the origin of its corners");
+  in.read("position_m", position_m, any_number(), "center; polygon: the origin of its corners");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch, yaw");
   in.read("size_m", size_m, above(0), "box: its lengths along x, y, z");
   in.read("radius_m", radius_m, above(0), "sphere, cylinder");

@@ -15,7 +15,7 @@ struct CraftState {
   Vector3d v_water;                   ///< of the water at the origin, m/s
   Vector3d v_air = Vector3d::Zero();  ///< of the wind, m/s; used with windage only
   Vector3d a_water;                   ///< acceleration of the water in waves, m/s^2
-  Vector3d down;                      ///< unit vector towards the centre of the earth
+  Vector3d down;                      ///< unit vector towards the center of the earth
   double depth_m = 0;                 ///< of the origin below the surface
   double surface_roll_rad = 0, surface_pitch_rad = 0;  ///< slope of the surface at its water plane
   double density_kgpm3 = 0;                            ///< of the water
@@ -54,14 +54,14 @@ class CoefficientModel {
   /// Returns d(nu)/dt under the forces `tau` (N, N m about the origin), which exclude those of the water, weight and
   /// buoyancy.
   Vector6d acceleration(const CraftState& state, const Vector6d& tau) const;
-  /// The same for a step that is too long for this velocity: damping is linearised and evaluated at the end of the step
+  /// The same for a step that is too long for this velocity: damping is linearized and evaluated at the end of the step
   /// (backward Euler), and Coriolis forces add no energy, so that the motion is stable at any speed.
   Vector6d stiff_acceleration(const CraftState& state, const Vector6d& tau, double step_s) const;
   /// Returns the hydrodynamic forces except those proportional to acceleration, plus weight and buoyancy.
   Vector6d forces(const CraftState& state, const Vector6d& nu_r) const;
 
-  /// Returns the wrench about the centre of mass, in these axes, that gives this acceleration to a body of mass
-  /// `mass_kg` and inertia `inertia` about its centre of mass.
+  /// Returns the wrench about the center of mass, in these axes, that gives this acceleration to a body of mass
+  /// `mass_kg` and inertia `inertia` about its center of mass.
   Vector6d equivalent_wrench(const Vector6d& nu_dot, const Vector3d& v, const Vector3d& w, double mass_kg,
                              const Matrix3d& inertia) const;
 

@@ -18,7 +18,7 @@ constexpr double section_m = 0.25;
 
 }  // namespace
 
-/// Sums over the pieces of a body, about its centre of mass, in world axes.
+/// Sums over the pieces of a body, about its center of mass, in world axes.
 struct ImmersedBodies::Wrench {
   Matrix3d R_WB;
   Vector3d p_WB, p_WC, v_WC_W, w_W;
@@ -71,7 +71,7 @@ std::vector<ImmersedPiece> ImmersedBodies::pieces_of(const Body& body, const Bod
 void ImmersedBodies::find_stiffness(ImmersedBody& body, const SourcePlace& place, double gravity_mps2,
                                     std::vector<Warning>& warnings) const {
   const LocalWater water = medium_.water_at(body.body->X_WB().translation());
-  const double pressure = water.density_kgpm3 * std::abs(gravity_mps2);  // per metre
+  const double pressure = water.density_kgpm3 * std::abs(gravity_mps2);  // per meter
   double heave_Npm = 0;
   Vector3d turn_Nmprad = Vector3d::Zero();
   for (const ImmersedPiece& piece : body.pieces) {

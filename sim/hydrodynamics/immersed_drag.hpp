@@ -8,14 +8,14 @@
 
 namespace sim {
 
-/// Drag on the pieces of one body in one step.  Forces and torques are about the centre of mass, in world axes; a twist
+/// Drag on the pieces of one body in one step.  Forces and torques are about the center of mass, in world axes; a twist
 /// is its linear velocity, then its angular velocity.
 class ImmersedDrag {
  public:
   /// Starts a new body with this motion, m/s and rad/s.
   void begin(const Matrix3d& R_WB, const Vector3d& v_WC_W, const Vector3d& w_W);
-  /// Adds a piece in a fluid.  `share`: fraction of it in the fluid; `at_CP_W`: centre of pressure relative to the
-  /// centre of mass.
+  /// Adds a piece in a fluid.  `share`: fraction of it in the fluid; `at_CP_W`: center of pressure relative to the
+  /// center of mass.
   void add(const ImmersedPiece& piece, double share, double density_kgpm3, const Vector3d& v_fluid_W,
            const Vector3d& at_CP_W, const Matrix3d& R_WP);
 

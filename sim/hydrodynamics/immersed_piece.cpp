@@ -53,7 +53,7 @@ ImmersedPiece box_piece(const Vector3d& size, const Vector3d& C) {
   return piece;
 }
 
-/// Section of a cylinder or capsule from `low` to `high` along its axis.  The water is evaluated at the centre of the
+/// Section of a cylinder or capsule from `low` to `high` along its axis.  The water is evaluated at the center of the
 /// section, not of the part.
 ImmersedPiece round_piece(const PartConfig& part, double low, double high, const Vector3d& C) {
   ImmersedPiece piece;
@@ -194,7 +194,7 @@ ImmersedVolume ImmersedPiece::immersed(const WaterPlane& plane) const {
     case Shape::round:
       break;
   }
-  // The solid is relative to the centre of the part, the piece to its own centre.
+  // The solid is relative to the center of the part, the piece to its own center.
   const double shift = (round.low_m + round.high_m) / 2;
   ImmersedVolume volume = immersed_round(round, {plane.normal, plane.level_m + shift * plane.normal.z()});
   if (volume.volume_m3 > 0) volume.centroid_m.z() -= shift;

@@ -18,7 +18,7 @@ struct ImmersedPiece {
 
   Shape shape = Shape::box;
   Matrix3d R_BP = Matrix3d::Identity();              ///< frame P of the piece in the body
-  Vector3d p_BP = Vector3d::Zero();                  ///< origin of P, near the centre of the piece
+  Vector3d p_BP = Vector3d::Zero();                  ///< origin of P, near the center of the piece
   Vector3d size_m = Vector3d::Zero();                ///< extents along the axes of P
   RoundSolid round;                                  ///< shape round; relative to P
   std::shared_ptr<const Mesh> mesh;                  ///< shape mesh; relative to P

@@ -129,7 +129,7 @@ class RoundSum {
     cap_ = true;
     double cuts[2];
     int count = 0;
-    const double level = level_ - along_ * center;  // over the centre
+    const double level = level_ - along_ * center;  // over the center
     if (std::abs(level) < radius_) {
       const double half = across_ * std::sqrt(radius_ * radius_ - level * level);
       cuts[count++] = center + level * along_ - half;

@@ -18,7 +18,7 @@ struct ImmersedVolume {
   Vector3d centroid_m = Vector3d::Zero();  ///< zero when the volume is zero
 };
 
-/// Cylinder or capsule along z with its centre at the origin, or its part between two heights.
+/// Cylinder or capsule along z with its center at the origin, or its part between two heights.
 struct RoundSolid {
   double radius_m = 0.5;
   double half_length_m = 0.5;  ///< of a capsule without its caps

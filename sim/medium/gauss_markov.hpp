@@ -22,7 +22,7 @@ inline double fresh_std(double std, double dt_s, double correlation_time_s) {
   return std * std::sqrt(-std::expm1(-2 * dt_s / correlation_time_s));
 }
 
-/// Three first-order Gauss-Markov processes with one correlation time, by exact discretisation.  They are drawn on a
+/// Three first-order Gauss-Markov processes with one correlation time, by exact discretization.  They are drawn on a
 /// separate time grid with a spacing of a fiftieth of the correlation time, and interpolated linearly: values do not
 /// depend on the steps taken to reach a time.  Between grid points the variance is up to 1 % lower.
 class GaussMarkov {

@@ -121,7 +121,7 @@ double WaterColumn::sound_speed_mps(double depth_m) const {
 
 double WaterColumn::mean_slowness_spm(double depth_m, double other_depth_m) const {
   const double high_m = std::min(depth_m, other_depth_m), low_m = std::max(depth_m, other_depth_m);
-  // Over less than a millimetre the value in the middle is exact to rounding.
+  // Over less than a millimeter the value in the middle is exact to rounding.
   if (config_.sound_speed_mps || low_m - high_m < 1e-3) return 1 / sound_speed_mps((high_m + low_m) / 2);
   // Gauss-Legendre quadrature with 3 points per interval: its error is 5 digits below the variation of the speed in 20
   // m.

@@ -69,7 +69,7 @@ void check_inertia(const HydrodynamicsConfig& config, ParamReader& in) {
   const double min = symmetric_eigenvalues(I)[0];
   if (!(min > 0))
     in.error("inertia_kgm2",
-             "'inertia_kgm2' about the centre of mass must be positive definite, its smallest eigenvalue is " +
+             "'inertia_kgm2' about the center of mass must be positive definite, its smallest eigenvalue is " +
                  computed_text(min) + "; see 'inertia_about'");
 }
 
@@ -145,10 +145,10 @@ std::vector<std::string> doubts_about_inertia(const HydrodynamicsConfig& config)
 std::vector<std::string> doubts_about(const HydrodynamicsConfig& config) {
   std::vector<std::string> doubts = doubts_about_inertia(config);
   const double above = config.center_of_buoyancy_m.z() - config.center_of_mass_m.z();
-  // Centre of mass above the centre of buoyancy: unstable.
+  // Center of mass above the center of buoyancy: unstable.
   if (!config.waterline && above > 0)
-    doubts.insert(doubts.begin(), "its centre of mass lies " + number_text(above) +
-                                      " m above its centre of buoyancy, so that it turns over; is 'frame' " +
+    doubts.insert(doubts.begin(), "its center of mass lies " + number_text(above) +
+                                      " m above its center of buoyancy, so that it turns over; is 'frame' " +
                                       std::string(word_of(axes_frame_words, config.frame)) + " right?");
   return doubts;
 }

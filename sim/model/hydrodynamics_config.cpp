@@ -255,7 +255,7 @@ void HydrodynamicsConfig::read(ParamReader& in) {
   }
   in.read("windage", windage, "wind force on the part above the water");
   in.read("quirks", quirks, "deviations of published models from physics");
-  // Shift the inertia to the centre of mass (parallel axis theorem).
+  // Shift the inertia to the center of mass (parallel axis theorem).
   if (about == InertiaAbout::origin) {
     const Vector3d& r = center_of_mass_m;
     inertia_kgm2 -= mass_kg * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());

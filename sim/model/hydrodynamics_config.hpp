@@ -125,7 +125,7 @@ struct HydrodynamicsConfig {
   AxesFrame frame = AxesFrame::flu;
   double mass_kg = 0;
   Vector3d center_of_mass_m = Vector3d::Zero();
-  Matrix3d inertia_kgm2 = Matrix3d::Zero();  ///< about the centre of mass
+  Matrix3d inertia_kgm2 = Matrix3d::Zero();  ///< about the center of mass
   std::optional<double> weight_N;            ///< unset: mass times gravity
   std::optional<double> buoyancy_N;          ///< buoyancy when fully immersed; unset: from volume_m3
   std::optional<double> volume_m3;           ///< displaced volume; unset: neutral buoyancy

@@ -88,10 +88,10 @@ void PartConfig::read(ParamReader& in) {
   in.read("radius_m", radius_m, part_length(), "sphere, capsule, cylinder");
   in.read("length_m", length_m, part_length(), "capsule (without its caps) and cylinder: length along z");
   in.read_path("mesh", mesh, PathUse::read, "mesh: an STL or OBJ file, relative to this file");
-  in.read("scale", scale, above(0), "mesh: its numbers times this are metres");
+  in.read("scale", scale, above(0), "mesh: its numbers times this are meters");
   in.read("terrain", terrain, "terrain: its heights; see docs/models/terrain.md");
   // Pose, mass and material.
-  in.read("position_m", position_m, any_place(), "centre of the part in the frame of the body");
+  in.read("position_m", position_m, any_place(), "center of the part in the frame of the body");
   in.read_deg("rpy_deg", rpy_rad, "roll, pitch and yaw of the part in the frame of the body");
   in.read("mass_kg", mass_kg, between(1e-9, 1e12), "mass; a part with neither mass nor density weighs nothing");
   in.read("density_kgpm3", density_kgpm3, between(1e-6, 1e9), "density, instead of a mass");

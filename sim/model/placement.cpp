@@ -10,7 +10,7 @@ void PlacementConfig::read(ParamReader& in) {
       "pattern", pattern,
       {{"grid", Pattern::grid}, {"line", Pattern::line}, {"circle", Pattern::circle}, {"random", Pattern::random}},
       "how the instances are laid out");
-  in.read("spacing_m", spacing_m, above(0), "grid and line: distance between neighbours");
+  in.read("spacing_m", spacing_m, above(0), "grid and line: distance between neighbors");
   in.read_or_word("columns", columns, at_least(1), {"auto"}, "grid: instances along x; auto: as square as possible");
   in.read("radius_m", radius_m, above(0), "circle: its radius; instances face outwards");
   in.read("area_m", area_m, at_least(0), "random: size of the box that places are drawn from");

@@ -25,8 +25,8 @@ struct PlacementConfig {
   void read(ParamReader& in);
 };
 
-/// Returns the poses of `count` instances, reproducible from seed and name.  Grid and line are centred on the pose X_WE
-/// of the entry.
+/// Returns the poses of `count` instances, reproducible from seed and name.  Grid and line are centered on the pose
+/// X_WE of the entry.
 std::vector<Pose> place_instances(const PlacementConfig& config, int count, const Pose& X_WE, std::uint64_t seed,
                                   const std::string& name);
 

@@ -13,7 +13,7 @@ enum class Easing : unsigned char {
   linear,
   cosine,  ///< (1 - cos(pi s)) / 2: at rest at both ends
   smooth,  ///< 3 s^2 - 2 s^3: at rest at both ends
-  spline,  ///< cubic Hermite; slope at a key: that of the line from its neighbour before to the one after, 0 at the
+  spline,  ///< cubic Hermite; slope at a key: that of the line from its neighbor before to the one after, 0 at the
            ///< ends
   step     ///< the value before until the key
 };

@@ -40,7 +40,7 @@ inline Quaterniond to_quaternion(const Matrix3d& R) {
   return Quaterniond(R).normalized();
 }
 
-/// Pose of ODE's frame of a body, with its origin at the centre of mass.
+/// Pose of ODE's frame of a body, with its origin at the center of mass.
 inline Pose ode_pose(dBodyID body) {
   Pose X_WC = Pose::Identity();
   X_WC.linear() = rotation_to_eigen(dBodyGetRotation(body));

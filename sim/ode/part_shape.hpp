@@ -46,7 +46,7 @@ class MeshCache {
 /// shape is a mesh.
 GeomHandle make_geom(const PartConfig& part, const CollisionMesh* mesh);
 
-/// Mass, centre of mass and inertia of the part in the body frame (inertia about its origin); mass 0 when the part has
+/// Mass, center of mass and inertia of the part in the body frame (inertia about its origin); mass 0 when the part has
 /// neither mass nor density.  Throws ConfigError at the part for a mesh that is not closed.
 dMass part_mass(const PartConfig& part, const CollisionMesh* mesh, const std::string& who);
 

@@ -31,7 +31,7 @@ struct BodyMotion {
   Vector3d p_WB = Vector3d::Zero(), v_WB_W = Vector3d::Zero(), w_WB_W = Vector3d::Zero();
 };
 
-/// Rigid body: an ODE body, free or kinematic, or a fixed body without one.  ODE's frame has its origin at the centre
+/// Rigid body: an ODE body, free or kinematic, or a fixed body without one.  ODE's frame has its origin at the center
 /// of mass; this class uses the body frame B that the vehicle file defines.
 class Body : public VisitedInSteps {
  public:
@@ -41,10 +41,10 @@ class Body : public VisitedInSteps {
   bool fixed() const { return ode_ == nullptr; }  ///< has no ODE body
   bool kinematic() const { return motion_ == Motion::kinematic; }
 
-  // Mass, centre of mass and inertia are zero for a body that is not free.
+  // Mass, center of mass and inertia are zero for a body that is not free.
   double mass_kg() const { return mass_kg_; }
-  const Vector3d& p_BC() const { return p_BC_; }                ///< centre of mass in B
-  const Matrix3d& inertia_C_B() const { return inertia_C_B_; }  ///< about the centre of mass, axes of B, kg m^2
+  const Vector3d& p_BC() const { return p_BC_; }                ///< center of mass in B
+  const Matrix3d& inertia_C_B() const { return inertia_C_B_; }  ///< about the center of mass, axes of B, kg m^2
 
   /// Pose of the body frame.
   Pose X_WB() const;
@@ -70,16 +70,16 @@ class Body : public VisitedInSteps {
   /// when a number is not finite.
   void add_force_W(const Vector3d& force_N, const Vector3d& at_W);
   void add_torque_W(const Vector3d& torque_Nm);
-  /// Adds a force whose point is given from the centre of mass.
+  /// Adds a force whose point is given from the center of mass.
   void add_force_at_W(const Vector3d& force_N, const Vector3d& p_CP_W);
-  /// Sum of what was added for the next step: force, and torque about the centre of mass.  Without the forces of
+  /// Sum of what was added for the next step: force, and torque about the center of mass.  Without the forces of
   /// set_velocity_at_end().
   Vector3d applied_force_W() const;
   Vector3d applied_torque_W() const;
   /// Replaces the force and torque added for the next step.  Throws PhysicsFault when a number is not finite.
   void set_applied_W(const Vector3d& force_N, const Vector3d& torque_Nm);
   /// Replaces the force and torque added for the next step by those that give the body these velocities at its end: of
-  /// the centre of mass relative to what moves with `carried_W`, and angular, both in axes of the body at its end. What
+  /// the center of mass relative to what moves with `carried_W`, and angular, both in axes of the body at its end. What
   /// is added afterwards acts on top of them.  The gyroscopic torque and gravity must be off.  Throws PhysicsFault when
   /// a number is not finite.
   void set_velocity_at_end(const Vector3d& v_C_B, const Vector3d& carried_W, const Vector3d& w_B, double step_s);
@@ -166,10 +166,10 @@ class Body : public VisitedInSteps {
   double mass_kg_ = 0;
   Vector3d p_BC_ = Vector3d::Zero();
   Matrix3d inertia_C_B_ = Matrix3d::Zero();
-  // Accelerations of the last step, if the body was alone: of the centre of mass, and angular in axes of B.
+  // Accelerations of the last step, if the body was alone: of the center of mass, and angular in axes of B.
   Vector3d a_WC_W_ = Vector3d::Zero(), alpha_B_ = Vector3d::Zero();
   Vector3d v_C_B_at_end_, carried_W_, w_B_at_end_;  // of set_velocity_at_end()
-  // While each coordinate of the centre of mass is within this distance of a place, the body is in the box that
+  // While each coordinate of the center of mass is within this distance of a place, the body is in the box that
   // FarGroups has for it; infinite: it has none.
   Vector3d box_center_W_ = Vector3d::Zero();
   double leeway_m_ = std::numeric_limits<double>::infinity();

@@ -42,7 +42,7 @@ class CrowdContacts {
  private:
   struct Vehicle {
     double mass_kg = 0, inverse_mass = 0;
-    Vector3d p_WC = Vector3d::Zero();  // centre of mass
+    Vector3d p_WC = Vector3d::Zero();  // center of mass
     Matrix3d inverse_inertia_W = Matrix3d::Zero();
     Vector3d dv_W = Vector3d::Zero(), dw_W = Vector3d::Zero();  // by the impulses
     std::vector<const Body*> bodies;

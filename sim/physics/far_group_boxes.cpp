@@ -82,7 +82,7 @@ void PhysicsWorld::Impl::update_far_groups() {
       if (body.left_its_box()) left_boxes.push_back(body.group_);
     });
   far_jumps = moves.jumps;
-  // Looking for the neighbours of one group takes about a thirtieth of making all boxes again.
+  // Looking for the neighbors of one group takes about a thirtieth of making all boxes again.
   constexpr std::size_t max_single = 32;
   std::sort(left_boxes.begin(), left_boxes.end());
   left_boxes.erase(std::unique(left_boxes.begin(), left_boxes.end()), left_boxes.end());

@@ -8,8 +8,8 @@
 
 namespace sim {
 
-/// Finds the groups that are far from everything: their boxes meet no box of another group and no fixed part.  With
-/// boxes that are wider than the groups nothing can touch such a group until it leaves its box.
+/// Finds the groups that are far from everything: their boxes meet no box of another group and no fixed part.
+/// Boxes are inflated, so that nothing can touch such a group until it leaves its box.
 class FarGroups {
  public:
   /// Removes all boxes; then the groups have the numbers below `groups`.

@@ -172,7 +172,7 @@ void Joint::start_damping(dJointGroupID group) {
   if (load_) dJointSetFeedback(damper, &load_->damping_feedback);
 }
 
-/// Makes a contact whose friction is that of the damper: ODE's linear motor pushes the bodies at their centres, off the
+/// Makes a contact whose friction is that of the damper: ODE's linear motor pushes the bodies at their centers, off the
 /// line of the slider.
 dJointID Joint::create_slider_damper(dJointGroupID group) const {
   dContact contact = {};

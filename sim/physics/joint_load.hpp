@@ -14,7 +14,7 @@ struct Joint::Load {
   dJointFeedback leaving_feedback = {};  // of stops that motors leave
   dJointFeedback damping_feedback = {};
   // Values at the start of the step, since the load acts at those poses.
-  Vector3d p_CA_W = Vector3d::Zero();  // from the centre of mass of the loaded body to the anchor
+  Vector3d p_CA_W = Vector3d::Zero();  // from the center of mass of the loaded body to the anchor
   Vector3d p_AM_W = Vector3d::Zero();  // to the point where ODE applies the added force of a slider
   Vector3d axis_W[max_axes] = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
   double added[max_axes] = {};   // by add_effort

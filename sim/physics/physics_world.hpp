@@ -31,7 +31,7 @@ struct PartInfo {
   int material = 0;  ///< see PhysicsWorld::material
   std::uint32_t category = 1;
   Pose X_BP = Pose::Identity();  ///< of the part in its body
-  std::optional<Color> color;    ///< own colour; else that of the material
+  std::optional<Color> color;    ///< own color; else that of the material
   bool plane = false;            ///< infinite
 };
 
@@ -99,7 +99,7 @@ class PhysicsWorld {
   /// Adds a group, for a vehicle or an object, and returns its number.  Parts of a group collide with each other only
   /// when `self_collision` is true.
   int add_group(const std::string& name, bool self_collision = false);
-  /// Creates a body whose mass, centre of mass and inertia are computed from its parts.  X_WV: pose of the vehicle or
+  /// Creates a body whose mass, center of mass and inertia are computed from its parts.  X_WV: pose of the vehicle or
   /// object.  A body that is fixed or kinematic needs no mass and has none.  Throws ConfigError (mesh files; no mass).
   Body& add_body(int group, const BodyConfig& config, const Pose& X_WV, Motion motion = Motion::free);
   /// Creates a joint between bodies of this group; `second` null: the world.  The present poses of the bodies are the

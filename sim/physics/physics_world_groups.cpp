@@ -178,7 +178,7 @@ void PhysicsWorld::Impl::add_part(Body& body, const BodyConfig& config_, std::si
 
 namespace {
 
-/// Mass, centre of mass and inertia given in a body's hydrodynamics, in body axes.
+/// Mass, center of mass and inertia given in a body's hydrodynamics, in body axes.
 dMass published_mass(const HydrodynamicsConfig& config) {
   const auto flip = [](int i) { return i == 0 ? 1.0 : -1.0; };  // forward-right-down to forward-left-up
   dMass mass;
@@ -204,7 +204,7 @@ void PhysicsWorld::Impl::set_mass(Body& body, const BodyConfig& config_, const d
     const SourcePlace place = config_.parts.empty() ? config_.place : config_.parts.front().place;
     throw_config_error(place, "body '" + body.name() + "'", "has no mass: give a part mass_kg or density_kgpm3");
   }
-  // Move the inertia to the centre of mass.
+  // Move the inertia to the center of mass.
   dMass mass = total;
   body.mass_kg_ = mass.mass;
   body.p_BC_ = to_eigen(mass.c);

@@ -39,7 +39,7 @@ struct Shard {
   std::exception_ptr fault;
 };
 
-/// What a thread needs to step a shard; keeps nothing from one shard to the next.
+/// Scratch data of a thread that steps shards; it carries no state from one shard to the next.
 struct ShardStepper {
   explicit ShardStepper(const PhysicsConfig& config)
       : making(config.max_contacts_per_pair),

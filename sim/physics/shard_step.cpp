@@ -48,7 +48,7 @@ void PhysicsWorld::Impl::step_shards(std::int64_t step_number) {
     for (const Shard* shard : filled_)
       for (const Body* body : shard->moving)
         if (dBodyGetFirstGeom(body->ode_.get()) != nullptr) mark_as_moved(*body);
-  // Neighbours in one task, since their memory is near too; but enough tasks for all threads.
+  // Neighbors in one task, since their memory is near too; but enough tasks for all threads.
   const std::size_t thread_count = shared ? static_cast<std::size_t>(threads->threads()) : 1;
   const std::size_t shards_per_task = std::clamp<std::size_t>(filled_.size() / (4 * thread_count), 1, 8);
   const auto step_some = [&](std::size_t task) {

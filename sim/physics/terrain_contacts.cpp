@@ -64,14 +64,14 @@ Touch touch_at(const HeightGrid& grid, const Vector3d& p_T) {
   return {p_T, normal_T, (surface.height_m - p_T.z()) * normal_T.z()};
 }
 
-/// Point of the ground nearest to the centre of a sphere, by Newton's method on the squared distance.  Where the
+/// Point of the ground nearest to the center of a sphere, by Newton's method on the squared distance.  Where the
 /// Hessian is not positive definite due to curvature, the curvature is left out (Gauss-Newton).
 Touch touch_sphere(const HeightGrid& grid, const Vector3d& c_T, double radius_m) {
   if (!grid.contains(c_T.x(), c_T.y())) return no_touch();
   SurfacePoint surface = grid.smooth_at(c_T.x(), c_T.y());
   // The nearest point cannot be farther away horizontally than the vertical distance to the ground.
   const double reach_m = std::abs(surface.height_m - c_T.z());
-  double x = 0, y = 0;  // relative to the centre
+  double x = 0, y = 0;  // relative to the center
   for (int i = 0; i < 4; ++i) {
     // Gradient and Hessian of half the squared distance.
     const double up = surface.height_m - c_T.z();
@@ -162,7 +162,7 @@ void touch_cylinder(const HeightGrid& grid, dGeomID geom, const Seat& seat, Touc
   const Vector3d half_T = length_m / 2 * axis_T;
   touch_along(grid, length_m, touches,
               [&](double s) { return touch_rim(grid, seat.p_T + s * half_T, axis_T, radius_m); });
-  // Axis within 30 degrees of the normal: four points of the lower rim, and the centre of the end where the ground is
+  // Axis within 30 degrees of the normal: four points of the lower rim, and the center of the end where the ground is
   // higher.
   const double upright = axis_T.dot(grid.smooth_at(seat.p_T.x(), seat.p_T.y()).normal());
   if (std::abs(upright) < 0.866) return;

@@ -35,7 +35,7 @@ const CollisionTerrain& terrain_of(dGeomID geom) {
   return *static_cast<ClassData*>(dGeomGetClassData(geom))->terrain;
 }
 
-/// Poses ODE's heightfield, which has y up and its origin in its centre.
+/// Poses ODE's heightfield, which has y up and its origin in its center.
 void place_heightfield(const CollisionTerrain& terrain, dGeomID at) {
   const HeightGrid& grid = terrain.terrain.grid;
   const Matrix3d R_WT = rotation_to_eigen(dGeomGetRotation(at));

@@ -38,7 +38,7 @@ struct ArgDeclaration {
   std::vector<std::string> columns;  ///< names of the numbers of a tuple
   int min_columns = 0;               ///< number of required columns; 0: all are required
   bool required = false;
-  std::optional<ConfigNode> initial;  ///< default value; unset: the meaning describes the behaviour
+  std::optional<ConfigNode> initial;  ///< default value; unset: the meaning describes the behavior
   std::vector<std::string> needs;     ///< arguments that must be given with this one
   std::string meaning;
 

@@ -94,7 +94,7 @@ void Noise::advance(double dt_s, Random& random) {
     for (Slow& slow : slow_) slow.walk += step_std * random.gaussian();
   }
   if (p.gauss_markov_std > 0) {
-    // Exact discretisation keeps the standard deviation for any dt.  The first value is drawn from the stationary
+    // Exact discretization keeps the standard deviation for any dt.  The first value is drawn from the stationary
     // distribution, as of an instrument that has been on for a long time.
     const double kept = started_ ? kept_ : 0;
     const double fresh_std = started_ ? fresh_std_ : p.gauss_markov_std;

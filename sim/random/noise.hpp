@@ -14,7 +14,7 @@
 namespace sim {
 
 /// Error model of one measured quantity, in its unit.  The parts are applied in this order: scale error, constant bias,
-/// random walk, Gauss-Markov, gaussian, uniform, outliers, quantisation, saturation.  YAML: a map with any of these
+/// random walk, Gauss-Markov, gaussian, uniform, outliers, quantization, saturation.  YAML: a map with any of these
 /// keys; all are off by default.
 struct NoiseParams {
   double scale_error = 0;            ///< measured = truth * (1 + scale_error)
@@ -62,7 +62,7 @@ class Noise {
   Noise(const NoiseParams& params, int values, Random bias_source, const NoiseFault* fault = nullptr);
 
   /// Adds errors to `values` in place.  values.size() may be larger than the number of slow states: value i then uses
-  /// state i % states.  `dt_s`: time since the last call (exact discretisation of the slow parts); 0 at the first.
+  /// state i % states.  `dt_s`: time since the last call (exact discretization of the slow parts); 0 at the first.
   void apply(std::span<double> values, double dt_s, Random& random);
   /// Adds errors to one value in place.
   void apply(double& value, double dt_s, Random& random);

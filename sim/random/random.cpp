@@ -9,7 +9,7 @@ namespace sim {
 
 namespace {
 
-/// Finalizer of SplitMix64: keys of neighbouring seeds are unrelated.
+/// Finalizer of SplitMix64: keys of neighboring seeds are unrelated.
 std::uint64_t mixed(std::uint64_t word) {
   word += 0x9e3779b97f4a7c15ULL;
   word = (word ^ (word >> 30)) * 0xbf58476d1ce4e5b9ULL;

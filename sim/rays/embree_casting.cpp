@@ -265,7 +265,7 @@ void for_packets(std::size_t count, bool coherent, Set&& set, Use&& use) {
   }
 }
 
-/// Calls use(start, rays) for groups of neighbouring rays.
+/// Calls use(start, rays) for groups of neighboring rays.
 template <typename Use>
 void for_bundles(std::span<const Ray> rays, Use&& use) {
   constexpr std::size_t together = 64;

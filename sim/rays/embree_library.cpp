@@ -34,7 +34,7 @@ const char* text_of(RTCError error) {
     case RTC_ERROR_UNSUPPORTED_CPU:
       return "this processor is not supported";
     case RTC_ERROR_CANCELLED:
-      return "cancelled";
+      return "canceled";
     default:
       return "unknown error";
   }

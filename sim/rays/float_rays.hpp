@@ -22,7 +22,7 @@ class FloatRays {
   explicit FloatRays(double radius_m)
       : margin_m_(static_cast<float>(2 * rounding * radius_m)), square_radius_m2_(radius_m * radius_m) {}
 
-  /// Sets the rays of `lanes` (bits), relative to the centre of the sphere: x of all lanes, y, z.  The other lanes may
+  /// Sets the rays of `lanes` (bits), relative to the center of the sphere: x of all lanes, y, z.  The other lanes may
   /// hold any numbers.  Rays that miss the sphere or end before it are dropped.  A single ray is not packed.
   void aim(const double (&from)[3][RayPacket::size], const double (&direction)[3][RayPacket::size],
            const double (&range_m)[RayPacket::size], unsigned lanes) {

@@ -63,7 +63,7 @@ SHOAL_INLINE Inside in_box(const RayShape& shape, const LocalRay& r) {
   return cut(in, r.z, r.vz, shape.size[2]);
 }
 
-/// Computed from the point of the ray nearest to the centre, so that distant origins lose no digits by squaring.
+/// Computed from the point of the ray nearest to the center, so that distant origins lose no digits by squaring.
 SHOAL_INLINE Inside in_sphere(double x, double y, double z, double vx, double vy, double vz, double square_radius) {
   const double along = -(x * vx + y * vy + z * vz);
   const double px = x + along * vx, py = y + along * vy, pz = z + along * vz;

@@ -29,7 +29,7 @@ struct alignas(32) RayShape {
   Kind kind = Kind::box;
   std::uint8_t transmits = 0;
   const TriangleScene* mesh = nullptr;
-  /// Squared distance of a ray's line from the centre above which it misses.
+  /// Squared distance of a ray's line from the center above which it misses.
   double misses_beyond_m2 = std::numeric_limits<double>::infinity();
 
   bool stops(const RayFilter& filter) const {
@@ -38,7 +38,7 @@ struct alignas(32) RayShape {
   }
   Vector3d center_W() const { return {center[0], center[1], center[2]}; }
   Vector3d axis_W(int number) const { return {axes[3 * number], axes[3 * number + 1], axes[3 * number + 2]}; }
-  /// Bounding radius about the centre.  Not for a plane.
+  /// Bounding radius about the center.  Not for a plane.
   double reach_m() const;
   /// Half extents along the axes of the world.  Not for a plane.
   Vector3d half_extents_W() const;
@@ -61,7 +61,7 @@ struct alignas(64) RayPacket {
   const RayShape* shape[size];
   std::uint32_t triangle[size];  ///< of a hit mesh
   int part[size];
-  bool coherent = false;  ///< neighbours have nearly the same direction
+  bool coherent = false;  ///< neighbors have nearly the same direction
 
   void set(int lane, const Vector3d& origin_W, const Vector3d& direction_W, double range_max_m) {
     for (int i = 0; i < 3; ++i) {

@@ -11,7 +11,7 @@
 
 namespace sim {
 
-/// Query of a packet: rays in the frame of the mesh, relative to its centre.  Callbacks get it by its first member.
+/// Query of a packet: rays in the frame of the mesh, relative to its center.  Callbacks get it by its first member.
 struct TriangleScene::Query {
   Query(const TriangleScene& scene_, const RayShape& shape, const RayPacket& rays_, unsigned lanes)
       : scene(scene_), rays(rays_), floats(scene_.radius_m_) {
@@ -86,7 +86,7 @@ TriangleScene::TriangleScene(const Mesh& mesh) : mesh_(mesh), scene_(rtcNewScene
   clearance_ = find_clearance(low, high);
 
   const EmbreeGeometryHandle geometry(rtcNewGeometry(embree_device(), RTC_GEOMETRY_TYPE_TRIANGLE));
-  // Copy the vertices relative to the centre, and share the triangles.
+  // Copy the vertices relative to the center, and share the triangles.
   auto* vertices =
       static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                   3 * sizeof(float), std::max<std::size_t>(1, mesh.vertices_m.size())));
@@ -122,7 +122,7 @@ std::int64_t number_of_edge(std::uint32_t from, std::uint32_t to) {
 /// Seen from above, the triangles of a terrain cover a rectangle once.  Then two points of a ray on two triangles are
 /// not nearer to each other than the first one is to the edges of its triangle, seen from above.
 ///
-/// That they cover it once follows from: all of them turn the same way, those edges that have no neighbour are on the
+/// That they cover it once follows from: all of them turn the same way, those edges that have no neighbor are on the
 /// rectangle's border (so that each point within is covered the same number of times), and their area is that of the
 /// rectangle.
 double TriangleScene::find_clearance(const Vector3d& low, const Vector3d& high) const {

@@ -17,7 +17,7 @@ class TriangleScene {
   /// Keeps a reference to the mesh.
   explicit TriangleScene(const Mesh& mesh);
 
-  /// Centre and half extents of the bounding box of the mesh, in its frame.
+  /// Center and half extents of the bounding box of the mesh, in its frame.
   const Vector3d& center_m() const { return center_m_; }
   const Vector3d& half_extents_m() const { return half_extents_m_; }
 

@@ -29,7 +29,7 @@ Terms terms_in(const std::string& text, const char* command, Terms terms) {
 
 void LockstepTerms::read(ParamReader& in) {
   in.read("session", session, between(0, 9e18),
-          "fresh random number per start of the client, so that replies from an earlier instance are recognised as "
+          "fresh random number per start of the client, so that replies from an earlier instance are recognized as "
           "stale; 0: none");
   in.read("receives", receives, "channels of which it must have every message");
   in.read_choice("on_timeout", on_timeout, on_timeout_words, "when it does not answer in timeout_s");

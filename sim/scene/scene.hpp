@@ -74,7 +74,7 @@ class Scene {
                                      const RayFilter& filter) const = 0;
   /// Casts all rays of a fan.  hits.size() == fan.count.
   virtual void cast_fan(const Fan& fan, const RayFilter& filter, std::span<RayHit> hits) const = 0;
-  /// Casts many rays; fastest when neighbouring rays have similar directions.  hits.size() == rays.size().
+  /// Casts many rays; fastest when neighboring rays have similar directions.  hits.size() == rays.size().
   virtual void cast(std::span<const Ray> rays, const RayFilter& filter, std::span<RayHit> hits) const;
   /// Sets blocked[i] to 1 when ray i has any hit within range, else to 0.  blocked.size() == rays.size().
   virtual void find_blocked(std::span<const Ray> rays, const RayFilter& filter, std::span<std::uint8_t> blocked) const;

@@ -11,7 +11,7 @@
 
 namespace sim {
 
-/// Behaviour of an actor at the end of its path.
+/// Behavior of an actor at the end of its path.
 enum class PathEnds { loop, reverse, stop };
 
 enum class ActorCommand {

@@ -21,7 +21,7 @@ struct TimedPose {
   Vector3d rpy_rad = Vector3d::Zero();
 };
 
-/// Curve in the world frame with an orientation at each point.  Its parameter u runs from 0 to length(): metres along a
+/// Curve in the world frame with an orientation at each point.  Its parameter u runs from 0 to length(): meters along a
 /// path of waypoints or a spline, seconds since the first pose along a timed path.
 class Path {
  public:

@@ -141,7 +141,7 @@ void fill_nearest(HeightGrid& grid) {
   for (int j = 0; j < grid.rows; ++j)
     for (int i = 0; i < grid.columns; ++i)
       if (!std::isnan(grid.at(i, j))) nearest[index(i, j)] = {i, j};
-  // Replace the nearest point by that of a neighbour if it is closer.
+  // Replace the nearest point by that of a neighbor if it is closer.
   const auto offer = [&](int i, int j, int from_i, int from_j) {
     if (from_i < 0 || from_j < 0 || from_i >= grid.columns || from_j >= grid.rows) return;
     const auto [a, b] = nearest[index(from_i, from_j)];

@@ -93,7 +93,7 @@ void fill_along(HeightGrid& grid, double direction_rad, const HeightAlong& heigh
 }  // namespace
 
 HeightGrid generate_grid(const TerrainConfig& config) {
-  // Flat grid centred on the origin.
+  // Flat grid centered on the origin.
   const double columns = std::round(config.size_m[0] / config.cell_m) + 1;
   const double rows = std::round(config.size_m[1] / config.cell_m) + 1;
   check_grid_size(static_cast<std::int64_t>(std::min(columns, 1e12)), static_cast<std::int64_t>(std::min(rows, 1e12)));

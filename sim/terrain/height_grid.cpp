@@ -23,10 +23,10 @@ Seat seat(double from_first_m, double cell_m, int points) {
 }
 
 /// Heights around a point relative to its own height, extrapolated linearly beyond the border.
-struct Neighbours {
+struct Neighbors {
   double d[3][3];  // [row][column]
 
-  Neighbours(const HeightGrid& grid, int column, int row) {
+  Neighbors(const HeightGrid& grid, int column, int row) {
     const double middle = grid.at(column, row);
     const bool inside = column > 0 && row > 0 && column + 1 < grid.columns && row + 1 < grid.rows;
     for (int j = -1; j <= 1; ++j)
@@ -70,7 +70,7 @@ std::size_t HeightGrid::cell_at(double x, double y) const {
 SurfacePoint HeightGrid::smooth_at(double x, double y) const {
   // Nearest point, heights around it and B-spline weights.
   const Seat u = seat(x - west_m, cell_m, columns), v = seat(y - south_m, cell_m, rows);
-  const Neighbours around(*this, u.index, v.index);
+  const Neighbors around(*this, u.index, v.index);
   const Weights a(u.t), b(v.t);
   // Tensor product of the splines along x and y.
   SurfacePoint point;
@@ -89,7 +89,7 @@ SurfacePoint HeightGrid::smooth_at(double x, double y) const {
     point.bend_xy_pm += b.slope[j] * slope;
     point.bend_yy_pm += Weights::bend[j] * value;
   }
-  // Convert derivatives from cells to metres.
+  // Convert derivatives from cells to meters.
   const double per_m = 1 / cell_m;
   point.slope_x *= per_m;
   point.slope_y *= per_m;
@@ -150,7 +150,7 @@ void check_heights(const HeightGrid& grid) {
       steep += high - low > too_steep;
     }
   if (2 * steep > grid.cells())
-    throw TerrainError("is steeper than 89 degrees nearly everywhere: heights and cells in one unit, metres?");
+    throw TerrainError("is steeper than 89 degrees nearly everywhere: heights and cells in one unit, meters?");
   check_extent(grid);
 }
 

@@ -26,7 +26,7 @@ struct SurfacePoint {
   Vector3d normal() const { return Vector3d(-slope_x, -slope_y, 1).normalized(); }  ///< unit vector, upwards
 };
 
-/// Heights at the points of a regular grid, in the frame T of the terrain: x east, y north, z up.  Four neighbouring
+/// Heights at the points of a regular grid, in the frame T of the terrain: x east, y north, z up.  Four neighboring
 /// points enclose a cell.
 ///
 /// Two surfaces are defined on the points.  Sensors see triangles: each cell is split along the diagonal from its
@@ -34,7 +34,7 @@ struct SurfacePoint {
 /// control points are the points of the grid (de Boor, A Practical Guide to Splines, for uniform knots).  The spline is
 /// C1-continuous.  Its height stays within the range of the nine heights around a point and its curvature within their
 /// second differences, so that a step in the heights causes no spike of acceleration.  Where heights vary along one
-/// axis only it passes through the midpoints between neighbouring points.  At the points of the grid it lies below
+/// axis only it passes through the midpoints between neighboring points.  At the points of the grid it lies below
 /// peaks and above pits by an eighth of the second difference along each axis.  It reproduces a plane exactly, up to
 /// the border.
 struct HeightGrid {
@@ -71,7 +71,7 @@ struct HeightGrid {
 
 /// Throws TerrainError unless the grid has at least 2 x 2 and at most max_cells points.
 void check_grid_size(std::int64_t columns, std::int64_t rows);
-/// Throws TerrainError for heights that are not finite or are probably not in metres: a range over 20 km, or more than
+/// Throws TerrainError for heights that are not finite or are probably not in meters: a range over 20 km, or more than
 /// half of the cells steeper than 89 degrees.
 void check_heights(const HeightGrid& grid);
 /// Returns the triangles: two per cell, in the order of the cells, the south-eastern triangle first.

@@ -69,7 +69,7 @@ Zone zone_of(const TerrainAreaConfig& area) {
   return Zone(zone);
 }
 
-/// Returns the area of each cell: the last area that contains the centre of the cell.
+/// Returns the area of each cell: the last area that contains the center of the cell.
 std::vector<std::uint8_t> areas_of_cells(const HeightGrid& grid, const std::vector<TerrainAreaConfig>& areas) {
   if (areas.empty()) return {};
   std::vector<Zone> zones;

@@ -32,7 +32,7 @@ HeightGrid parse_ascii_grid(std::string_view text, double vertical_scale, Holes 
 /// Reads a PNG with 8 or 16 bits of grey, northernmost row first.  Black is `low_m`, white `high_m`.  Throws
 /// TerrainError.
 HeightGrid read_png_grid(const std::string& path, double cell_m, double low_m, double high_m);
-/// Generates a slope, sine or fractal terrain, centred on the origin.
+/// Generates a slope, sine or fractal terrain, centered on the origin.
 HeightGrid generate_grid(const TerrainConfig& config);
 
 }  // namespace sim

@@ -123,10 +123,10 @@ void TerrainConfig::read(ParamReader& in) {
   // Grid and heights of a file.
   in.read_path("file", file, PathUse::read, "ascii, png: relative to this file");
   in.read("cell_m", cell_m, between(HeightGrid::min_cell_m, HeightGrid::max_place_m),
-          "distance of neighbouring heights; ascii: given in the file");
+          "distance of neighboring heights; ascii: given in the file");
   read_pair(in, "size_m", size_m, between(HeightGrid::min_cell_m, HeightGrid::max_place_m),
             "slope, sine, fractal: lengths along x and y");
-  in.read("vertical_scale", vertical_scale, above(0), "ascii: heights of the file times this are metres");
+  in.read("vertical_scale", vertical_scale, above(0), "ascii: heights of the file times this are meters");
   in.read("vertical_offset_m", vertical_offset_m, any_number(), "ascii, png: added to the heights");
   in.read("height_min_m", height_min_m, any_number(), "png: height of black");
   in.read("height_max_m", height_max_m, any_number(), "png: height of white");

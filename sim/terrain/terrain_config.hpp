@@ -39,7 +39,7 @@ struct TerrainAreaConfig {
 struct TerrainConfig {
   /// Source of the heights: ESRI ASCII grid, grey PNG, or a formula.
   enum class Source { ascii, png, slope, sine, fractal };
-  /// Point at the origin of the part: centre of the grid, its south-west point, or `map_origin_m`.
+  /// Point at the origin of the part: center of the grid, its south-west point, or `map_origin_m`.
   enum class Origin { center, corner, map };
 
   Source source = Source::slope;
@@ -47,7 +47,7 @@ struct TerrainConfig {
   std::string file;                      ///< ascii, png: relative to the YAML file
   double cell_m = 1;                     ///< spacing of points; ascii: given in the file
   std::vector<double> size_m{100, 100};  ///< slope, sine, fractal: lengths along x and y
-  double vertical_scale = 1;             ///< ascii: factor from heights in the file to metres
+  double vertical_scale = 1;             ///< ascii: factor from heights in the file to meters
   double vertical_offset_m = 0;          ///< ascii, png: added to the heights
   double height_min_m = 0;               ///< png: height of black
   double height_max_m = 1;               ///< png: height of white

@@ -46,7 +46,7 @@ std::optional<double> bottom_above(const World& world, const Vector3d& p_W, doub
   return depth_m - above->range_m;
 }
 
-std::string metres(double value) {
+std::string meters(double value) {
   return number_text(std::round(value * 100) / 100) + " m";
 }
 
@@ -54,11 +54,11 @@ std::string metres(double value) {
 
 std::string depth_fault(const World& world, const Eigen::Vector2d& p_W, double depth_m) {
   if (!world.config().medium.water) return "";
-  const std::string depth = "depth " + metres(depth_m) + " is ";
+  const std::string depth = "depth " + meters(depth_m) + " is ";
   if (depth_m < 0) return depth + "in the air: depths are positive downwards";
   const double surface_m = world.config().medium.water->surface_m;
   const auto bottom_m = bottom_above(world, {p_W.x(), p_W.y(), surface_m - depth_m}, depth_m);
-  return bottom_m ? depth + "below the bottom, which is at " + metres(*bottom_m) + " there" : "";
+  return bottom_m ? depth + "below the bottom, which is at " + meters(*bottom_m) + " there" : "";
 }
 
 void warn_of_plans(const World& world, const Vehicle& vehicle, Warnings& warnings) {

@@ -18,7 +18,7 @@ namespace sim {
 
 namespace {
 
-/// Allowed penetration: objects that rest on the ground or on others penetrate by about a millimetre.
+/// Allowed penetration: objects that rest on the ground or on others penetrate by about a millimeter.
 constexpr double allowed_m = 0.01;
 
 /// Height above all terrain.

@@ -88,10 +88,10 @@ void EverybodyHearsRays(benchmark::State& state) {
 BENCHMARK(EverybodyHearsRays)->Arg(100)->Arg(1000)->MinTime(2);
 
 /// One every 2 km: how many receive does not grow with the fleet.
-void NeighboursHear(benchmark::State& state) {
+void NeighborsHear(benchmark::State& state) {
   talk(state, 2000, "{}");
 }
-BENCHMARK(NeighboursHear)->Arg(100)->Arg(1000)->Arg(10000)->MinTime(2);
+BENCHMARK(NeighborsHear)->Arg(100)->Arg(1000)->Arg(10000)->MinTime(2);
 
 }  // namespace
 

@@ -29,9 +29,9 @@ Setup setup_of(int vehicles, int own, bool all_errors) {
   return setup;
 }
 
-/// A cycle of the centralised filter: each vehicle moves 5 times a second for 10 s, one of them sends, and the others
+/// A cycle of the centralized filter: each vehicle moves 5 times a second for 10 s, one of them sends, and the others
 /// receive it.  Arguments: vehicles; whether they have all lasting errors, 7 states each, or 2.
-void centralised(benchmark::State& state) {
+void centralized(benchmark::State& state) {
   const int vehicles = static_cast<int>(state.range(0));
   const auto team = algorithm_named("cekf").make_team();
   for (int i = 0; i < vehicles; ++i) team->start(i, setup_of(vehicles, i, state.range(1) != 0));
@@ -85,7 +85,7 @@ void own(benchmark::State& state, const char* name) {
   state.SetItemsProcessed(events);
 }
 
-BENCHMARK(centralised)->Args({5, 0})->Args({5, 1})->Args({20, 1})->Unit(benchmark::kMicrosecond);
+BENCHMARK(centralized)->Args({5, 0})->Args({5, 1})->Args({20, 1})->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(own, naive, "naive");
 BENCHMARK_CAPTURE(own, ci, "ci");
 BENCHMARK_CAPTURE(own, sci, "sci");

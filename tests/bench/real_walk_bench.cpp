@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "experiment/optimise/cma_es.hpp"
+#include "experiment/optimize/cma_es.hpp"
 #include "motion/analysis/real_walk.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/project_paths.hpp"

@@ -319,7 +319,7 @@ Experiment stack_of_boxes() {
   Experiment made{.name = "stack",
                   .title = "A stack of boxes",
                   .text =
-                      "Five cubes of 0.2 m and 1 kg stand on each other for 10 s. The height of the centre of the "
+                      "Five cubes of 0.2 m and 1 kg stand on each other for 10 s. The height of the center of the "
                       "uppermost is 0.9 m, and none moves.",
                   .duration_s = 10,
                   .quantities = {{"height of the uppermost (m)", edge * (count - 0.5)},

@@ -16,7 +16,7 @@ using sim::Matrix3d;
 using sim::Pose;
 using sim::Vector3d;
 
-/// Homogeneous solid, centred in its frame C; a cylinder lies along its z axis.
+/// Homogeneous solid, centered in its frame C; a cylinder lies along its z axis.
 struct Solid {
   enum class Shape { box, sphere, cylinder };
   Shape shape = Shape::box;
@@ -65,7 +65,7 @@ struct Model {
   double gravity_mps2 = test::g;
 };
 
-/// State of a body: its frame C is at the centre of mass.
+/// State of a body: its frame C is at the center of mass.
 struct BodyState {
   Matrix3d R_WC = Matrix3d::Identity();
   Vector3d p_WC = Vector3d::Zero(), v_WC_W = Vector3d::Zero(), w_W = Vector3d::Zero();

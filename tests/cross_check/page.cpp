@@ -167,7 +167,7 @@ constexpr const char* where_better = R"(
 
 - **Joints.** MuJoCo computes in joint coordinates: joints cannot come apart, and with any of its integrators a
   pendulum has a period that is hundreds of times more accurate. In Shoal a joint is a constraint between two bodies
-  (ODE), which drifts and is corrected: at 5 ms the hinge of the double pendulum gaps by millimetres, and the wide
+  (ODE), which drifts and is corrected: at 5 ms the hinge of the double pendulum gaps by millimeters, and the wide
   pendulum loses 3 % of its energy in 30 s, or 29 % with the quick solver. Robots with fast joints
   need a step of 1 ms.
 - **RK4.** Where nothing touches, MuJoCo's Runge-Kutta integrator is exact to many digits, at four times the cost of
@@ -175,7 +175,7 @@ constexpr const char* where_better = R"(
 - **A fast top on a joint.** Both engines' steps of first order lose it, Shoal's by sinking; only RK4 holds it.
 - **Stacks.** ODE's exact solver gives up on many steps of stacks of three or more boxes ("LCP internal error", in the
   log at `--log-level debug`); Shoal then takes the step back and makes it with the quick solver, at up to ten times the
-  time of a step. Higher stacks are pressed by millimetres.
+  time of a step. Higher stacks are pressed by millimeters.
 
 ### Where Shoal is better
 

@@ -142,14 +142,14 @@ TEST(Fidelity, TwentyMillisecondsAreEnough) {
 
 const std::string hull = "bodies.hull.hydrodynamics.";
 
-TEST(Fidelity, WithoutAddedMassAnOtterMissesItsBarByMetres) {
+TEST(Fidelity, WithoutAddedMassAnOtterMissesItsBarByMeters) {
   const tools::FidelityOptions none{.overrides = {{hull + "added_mass", "[0, 0, 0, 0, 0, 0]"}}};
   // The references' own figures: 16 m rms in the turn, 53 m in the current.
   EXPECT_NEAR(run("otter_turn", none).position_rms_m, 16, 2);
   EXPECT_GT(run("otter_current", none).position_rms_m, 10);
 }
 
-TEST(Fidelity, WithoutCoriolisForcesOfAddedMassAnOtterMissesItsBarByMetres) {
+TEST(Fidelity, WithoutCoriolisForcesOfAddedMassAnOtterMissesItsBarByMeters) {
   const tools::FidelityOptions none{.overrides = {{hull + "quirks.added_mass_coriolis", "none"}}};
   EXPECT_NEAR(run("otter_turn", none).position_rms_m, 16, 2);
   EXPECT_GT(run("otter_current", none).position_rms_m, 10);

@@ -118,7 +118,7 @@ TEST_F(Plugin, BuiltOutsideOfTheTreeReports) {
   EXPECT_THAT(info.output, HasSubstr("thermometer.temperature_t"));
   const Ended csv = shoal({"log", "csv", record, "probe.air", "--plugin", example()});
   EXPECT_THAT(csv.output, HasSubstr("temperature_degc"));
-  // 20 degrees at the ground, a hundredth less per metre, from 100 m.
+  // 20 degrees at the ground, a hundredth less per meter, from 100 m.
   EXPECT_THAT(csv.output, testing::ContainsRegex(",19\\.0[0-9]*\n"));
 }
 
@@ -222,7 +222,7 @@ TEST_F(Plugin, IsFoundByAPathOfTheEnvironment) {
 }
 
 TEST_F(Plugin, MayHaveMessagesThatHoldArraysAndShoalsOwn) {
-  const std::string initialiser =
+  const std::string initializer =
       "#include <stdexcept>\n#include \"arrays/array_lengths.hpp\"\n#include \"shoal/message_codec.hpp\"\n"
       "#include \"sim/device/plugin.hpp\"\n"
       "static bool refuses_a_wrong_length() {\n"
@@ -233,7 +233,7 @@ TEST_F(Plugin, MayHaveMessagesThatHoldArraysAndShoalsOwn) {
       "  throw std::runtime_error(\"not refused\");\n}\n"
       "static const bool refused = refuses_a_wrong_length();\n"
       "SHOAL_PLUGIN(\"arrays\", \"1.0\");\n";
-  build_plugin("arrays", initialiser, "LCM scan_t.lcm",
+  build_plugin("arrays", initializer, "LCM scan_t.lcm",
                "package arrays;\nstruct scan_t { int32_t count; double values[count]; shoal.pose_t poses[count]; }\n");
   const Ended ended = shoal({"describe", "arrays.scan_t", "--plugin", path("arrays/build/arrays.so")});
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
@@ -247,7 +247,7 @@ TEST_F(Plugin, ThatIsNoneSaysWhy) {
   expect_refused(library("plain", "int nothing;\n"), "is not a Shoal plugin: it lacks SHOAL_PLUGIN");
 }
 
-TEST_F(Plugin, OfAnotherShoalIsNotEvenInitialised) {
+TEST_F(Plugin, OfAnotherShoalIsNotEvenInitialized) {
   const std::string other = library("other", info_symbol("shoal-plugin|other|1.0|shoal 0.0.1") +
                                                  "#include <cstdlib>\nstatic int ended = (std::abort(), 0);\n");
   expect_refused(other, "was built for another version of Shoal and must be rebuilt; it has 'shoal 0.0.1'");
@@ -259,12 +259,12 @@ TEST_F(Plugin, ThatLacksAFunctionSaysWhich) {
       "cannot be loaded: undefined symbol: ");
 }
 
-TEST_F(Plugin, WhoseInitialiserThrowsSaysWhat) {
+TEST_F(Plugin, WhoseInitializerThrowsSaysWhat) {
   expect_refused(
       library("throwing", info_symbol(good_info()) + "#include <stdexcept>\n"
                                                      "static int f() { throw std::runtime_error(\"no thermistor\"); }\n"
                                                      "static int thrown = f();\n"),
-      "an initialiser threw: no thermistor\n");
+      "an initializer threw: no thermistor\n");
 }
 
 TEST_F(Plugin, WithATypeThatExistsIsRefused) {
@@ -314,7 +314,7 @@ TEST_F(Plugin, ClientExampleIsThatOfThePage) {
   const std::string page = system_test::text_of_file(source("docs/guides/client_library.md"));
   for (const char* file : {"examples/client/pilot.cpp", "examples/client/CMakeLists.txt"}) {
     const std::string text = system_test::text_of_file(source(file));
-    EXPECT_THAT(page, HasSubstr(text.substr(text.find('\n') + 1))) << "after the licence line";
+    EXPECT_THAT(page, HasSubstr(text.substr(text.find('\n') + 1))) << "after the license line";
   }
 }
 

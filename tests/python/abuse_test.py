@@ -150,7 +150,7 @@ class WrongTypesTest(unittest.TestCase):
             self.assertGreater(self.attack(getattr(_shoal, name), count), 20, name)
         for kind in [_shoal.World, _shoal.Client, _shoal.Pool, _shoal.RecordReader, _shoal.RecordWriter,
                      _shoal.Subscription]:
-            empty = kind.__new__(kind)  # not initialised
+            empty = kind.__new__(kind)  # not initialized
             for name in dir(kind):
                 if name.startswith('__'):
                     continue

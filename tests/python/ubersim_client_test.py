@@ -52,7 +52,7 @@ class UbersimClientTest(unittest.TestCase):
         found = re.fullmatch(r'cmu: tilt (-?[\d.]+) deg, balanced at (-?[\d.]+) deg, (-?[\d.]+) m from its start, '
                              r'(\d+) images of 64x48, end: left\n', out)
         self.assertTrue(found, out)
-        # atan(0.1 m * 22.7 kg / 72.7 kg / 0.1784 m): the centre of mass above the axle, as in docs/models/segway.md.
+        # atan(0.1 m * 22.7 kg / 72.7 kg / 0.1784 m): the center of mass above the axle, as in docs/models/segway.md.
         self.assertEqual(found[2], '-9.93')
         self.assertAlmostEqual(float(found[1]), -9.93, delta=4)  # four seconds after it leaned by 3 deg
         self.assertAlmostEqual(int(found[4]), 12 * 20, delta=2)

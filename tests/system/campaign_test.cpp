@@ -391,8 +391,8 @@ TEST(Campaign, TuningFindsTheBestEndOfARangeAndContinues) {
   EXPECT_EQ(second.output, first.output);
   EXPECT_THAT(second.errors, Not(HasSubstr("not judged")));
   // A figure that the world does not have.
-  EXPECT_THAT(run_shoal({"tune", folder.file("study.yaml"), "--figure", "distance.travelled"}).errors,
-              HasSubstr("--figure: metric 'distance' has no figure 'travelled'"));
+  EXPECT_THAT(run_shoal({"tune", folder.file("study.yaml"), "--figure", "distance.traveled"}).errors,
+              HasSubstr("--figure: metric 'distance' has no figure 'traveled'"));
 }
 
 TEST(Campaign, TuningPrefersAPointThatHoldsTheRulesOfItsWorld) {

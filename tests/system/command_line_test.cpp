@@ -414,7 +414,7 @@ TEST(CommandLine, ProgressKeepsToTheWidthAndTheLevel) {
   EXPECT_THAT(silent.shown(), HasSubstr("state hash"));
 }
 
-TEST(CommandLine, ColoursAreForTerminalsWithoutNoColor) {
+TEST(CommandLine, ColorsAreForTerminalsWithoutNoColor) {
   const ScratchFolder folder;
   // Falls like a stone, which a warning says.
   write_file(folder.file("w.yaml"), "shoal: 1\nvehicles:\n  - {name: a, position_m: [0, 0, 0], file: " +

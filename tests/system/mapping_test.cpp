@@ -102,7 +102,7 @@ TEST(MapCommand, ReportsWhatItCannotDo) {
   };
   EXPECT_THAT(errors({"minimal", "--out", "map.pgm"}), HasSubstr("--out: must end in .png, got 'map.pgm'"));
   EXPECT_THAT(errors({"minimal", "--area", "1,2,3"}),
-              HasSubstr("--area: must be four numbers in metres such as -20,-15,20,15, got '1,2,3'"));
+              HasSubstr("--area: must be four numbers in meters such as -20,-15,20,15, got '1,2,3'"));
   EXPECT_THAT(errors({"minimal", "--area", "3,0,1,1"}),
               HasSubstr("--area: the area must go from a smaller to a larger"));
   EXPECT_THAT(errors({"minimal", "--height", "900"}), HasSubstr("no object is 900 m above zero"));

@@ -189,7 +189,7 @@ TEST(CooperativeNavigation, IsTheSameRunAtAnySpeedAndWithAnyThreads) {
     EXPECT_EQ(first["metrics"], second["metrics"]) << world;
     EXPECT_EQ(first["bad_messages"], 0) << world;
     EXPECT_GE(first["metrics"]["link.received"], 20) << world;
-    // With GPS of 1 m before the dive and ranges of decimetres after it.
+    // With GPS of 1 m before the dive and ranges of decimeters after it.
     EXPECT_LT(first["metrics"]["cooperative.rms_m"], 6) << world;
     EXPECT_GT(first["acoustics"]["sent"], 20) << world;
   }

@@ -54,7 +54,7 @@ TEST(MediumCommand, SaysWhatIsWrong) {
   EXPECT_EQ(medium("{}", {"--profile"}).exit_code, 2);
   const Ended ended = medium("{water: {}}", {"--at", "1,2"});
   EXPECT_EQ(ended.exit_code, 2);
-  EXPECT_THAT(ended.errors, HasSubstr("three numbers in metres"));
+  EXPECT_THAT(ended.errors, HasSubstr("three numbers in meters"));
 }
 
 TEST(Water, ThatIsMissingForCoefficientsIsWarnedOfOnce) {

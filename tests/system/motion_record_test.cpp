@@ -382,7 +382,7 @@ TEST_F(MotionRecord, ATerminalWithoutReleasesStartsAndStopsJoints) {
 }
 
 TEST_F(MotionRecord, ItsLineHasTheStaticMarginInRedWhereItIsSmall) {
-  // Its front legs swing backward, until its centre of mass is before its feet.
+  // Its front legs swing backward, until its center of mass is before its feet.
   write_file(file_,
              "shoal: 1\nmotion: wave\nvehicle: ers7\nkeys:\n"
              "  - {at_s: 0, joints: {lf_swing: 0, rf_swing: 0}}\n"

@@ -201,7 +201,7 @@ TEST(Nav, AStudyOfAnUnknownAlgorithmIsRefusedBeforeItsRuns) {
 TEST(Nav, ListsItsAlgorithms) {
   const Ended all = run_nav({"--list"});
   EXPECT_EQ(all.exit_code, 0);
-  EXPECT_THAT(all.output, HasSubstr("cekf       centralised extended Kalman filter"));
+  EXPECT_THAT(all.output, HasSubstr("cekf       centralized extended Kalman filter"));
   EXPECT_EQ(run_nav({"--list", "--algorithm", "luck"}).exit_code, 2);
 }
 
@@ -262,7 +262,7 @@ TEST(Nav, RoversOfARecordNavigateByWhatTheySawAndReceived) {
   EXPECT_THAT(ended.output, HasSubstr("benchmark_coop_land: 3 vehicles"));
   const auto rms_m = rms_in(ended.output);
   ASSERT_EQ(rms_m.size(), 15U) << ended.output;
-  // Rover 3 has no GPS: by odometry alone it is wrong by a metre after a corner or two.
+  // Rover 3 has no GPS: by odometry alone it is wrong by a meter after a corner or two.
   for (const char* algorithm : {"naive", "ci", "luft", "cekf"})
     EXPECT_LT(rms_m.at(std::string(algorithm) + " rover3"), 0.6 * rms_m.at("dr rover3")) << algorithm;
   EXPECT_TRUE(std::filesystem::exists(folder.file("out/cekf/rover3.csv")));

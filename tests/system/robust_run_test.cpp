@@ -21,7 +21,7 @@ using testing::Not;
 const char* const endless =
     "shoal: 1\nrun: {duration_s: forever, speed: 1}\nobjects: [{name: ground, fixed: true, parts: [{shape: plane}]}]\n";
 
-/// Cubes of 0.5 m, all within the same cubic metre: nearly all of them overlap.
+/// Cubes of 0.5 m, all within the same cubic meter: nearly all of them overlap.
 std::string heap_of(int boxes) {
   std::string world = "shoal: 1\nrun: {duration_s: 1, speed: max}\nobjects:\n";
   for (int i = 0; i < boxes; ++i) {

@@ -496,7 +496,7 @@ TEST(Restore, WithLockstepClientsGoesOnlyWhereTheRunHasBeenAndRemembers) {
   EXPECT_EQ(Live::where(), "step 300, 3 s, branch 1, paused");
   EXPECT_EQ(control({"restore", "early"}).output, "step 200, 2 s, branch 2, paused\n");
   live.run_until("12");
-  EXPECT_THAT(refusal("early"), HasSubstr("its 2 s are before the history of this run"));
+  EXPECT_THAT(refusal("early"), HasSubstr("t = 2 s precedes this run's history"));
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
   EXPECT_EQ(pilot.wait(), 0) << pilot.output() << pilot.errors();
 }

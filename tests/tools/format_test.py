@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""tools/format finds and mends layout and licence lines, in its own project."""
+"""tools/format finds and mends layout and license lines, in its own project."""
 import os
 import shutil
 import subprocess

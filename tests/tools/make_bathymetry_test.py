@@ -27,7 +27,7 @@ def check_that_the_shipped_file_is_what_the_tool_makes(folder):
         assert a.read() == b.read(), "worlds/terrain/bathymetry.asc is stale"
 
 
-def check_that_a_plane_of_depths_comes_out_as_heights_in_metres(folder):
+def check_that_a_plane_of_depths_comes_out_as_heights_in_meters(folder):
     # Depth 10 m at 43 N 10 E, and 1 m more for each 100 m to the north: a degree of latitude has 111092 m there
     # (WGS 84), a degree of longitude 81541 m.
     points, out = os.path.join(folder, "plane.xyz"), os.path.join(folder, "plane.asc")
@@ -59,7 +59,7 @@ def main():
             assert missing.returncode == 1 and "apt-get install gdal-bin" in missing.stderr, missing.stderr
             print("gdalwarp is not installed: the import is not checked")
             sys.exit(77)
-        check_that_a_plane_of_depths_comes_out_as_heights_in_metres(folder)
+        check_that_a_plane_of_depths_comes_out_as_heights_in_meters(folder)
 
 
 if __name__ == "__main__":

@@ -95,7 +95,7 @@ it('takes the random part of a current from the run, and its mean before',
      server.send({op: 'current', time_us: 5e6, velocity_mps: [0.1, 0.2, 0.01]});
      await page.waitForFunction(() => window.shoal.currentAt([1e9, 0, -3], 5e6)[2] === 0.01);
      near((await at_far())[0], 0.1, 1e-6, 'east');
-     // The vehicle is at the centre of the vortex.
+     // The vehicle is at the center of the vortex.
      await page.waitForFunction(() => document.querySelector('#dock-water tbody tr').cells[3].textContent === '0.224');
      assert.equal((await rowsOf(page, '#dock-water'))[0][4], '63');
      // Another time has another random part.

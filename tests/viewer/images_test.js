@@ -98,9 +98,9 @@ describe('images', () => {
           assert.deepEqual(color.rgba.slice(4 * i, 4 * i + 4), [rgb[from], rgb[from + 1], rgb[from + 2], 255]);
           assert.deepEqual(levels.rgba.slice(4 * i, 4 * i + 4), [grey[i], grey[i], grey[i], 255]);
         }
-      // Depths in metres and millimetres, raw and as PNG: the values, not only their colors.
-      const metres = Float32Array.from({length: WIDTH * HEIGHT}, (_, i) => (i % 5 ? i / 8 : Infinity));
-      const depth = await show(3e6, image(FORMATS.float, new Uint8Array(metres.buffer), 4 * WIDTH));
+      // Depths in meters and millimeters, raw and as PNG: the values, not only their colors.
+      const meters = Float32Array.from({length: WIDTH * HEIGHT}, (_, i) => (i % 5 ? i / 8 : Infinity));
+      const depth = await show(3e6, image(FORMATS.float, new Uint8Array(meters.buffer), 4 * WIDTH));
       assert.equal(depth.values[6], 0.75);
       assert.deepEqual(depth.rgba.slice(0, 4), [0, 0, 0, 255]);
       const mm = Uint16Array.from({length: WIDTH * HEIGHT}, (_, i) => i * 273 % 65536);

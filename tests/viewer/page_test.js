@@ -581,9 +581,9 @@ describe('views', () => {
       await page.waitForFunction(() => window.shoal.probe().tape !== '');
       const {tape, camera} = await page.evaluate(() => window.shoal.probe());
       // From the crate (0.7 m high) in the middle to the ground 100 pixels to the right.
-      const metre_px = 300 / Math.tan(camera.fov_deg * Math.PI / 360) / camera.position[2];
+      const meter_px = 300 / Math.tan(camera.fov_deg * Math.PI / 360) / camera.position[2];
       const level_m = Number(/level ([\d.]+)/.exec(tape)[1]);
-      near(level_m, 100 / metre_px, 0.05, 'distance');
+      near(level_m, 100 / meter_px, 0.05, 'distance');
       near(Number(/up ([-\d.]+)/.exec(tape)[1]), -0.7, 0.01, 'height');
     });
   });

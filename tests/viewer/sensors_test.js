@@ -177,7 +177,7 @@ describe('ranges', () => {
       const usbl = byName['auv1 → auv2/answer'];
       assert.equal(usbl.range_m, 50.5);
       near(usbl.true_m, 50, 1e-3, 'true distance');
-      [0, 0, -9.8].forEach((value, i) => near(usbl.centre[i], value, 1e-3, `centre ${i}`));
+      [0, 0, -9.8].forEach((value, i) => near(usbl.center[i], value, 1e-3, `center ${i}`));
       // 1498.8 m/s at 9.8 m, by the profile of the scene.
       near(byName['auv1 → auv3'].range_m, 14.988, 0.001, 'travel time times sound speed');
       near(byName['auv1 → auv3'].true_m, Math.hypot(10, 0.2), 1e-3, 'to the vehicle');

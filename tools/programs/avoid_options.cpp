@@ -22,10 +22,10 @@ std::optional<Avoidance> AvoidOptions::make() const {
   return Avoidance(make_avoidance(law, params), tracks);
 }
 
-std::unique_ptr<HelmBehaviour> AvoidOptions::around(std::unique_ptr<HelmBehaviour> behaviour) const {
+std::unique_ptr<HelmBehavior> AvoidOptions::around(std::unique_ptr<HelmBehavior> behavior) const {
   const std::optional<Avoidance> avoidance = make();
-  if (!avoidance) return behaviour;
-  return std::make_unique<AvoidBehaviour>(std::move(behaviour), *avoidance);
+  if (!avoidance) return behavior;
+  return std::make_unique<AvoidBehavior>(std::move(behavior), *avoidance);
 }
 
 }  // namespace autonomy

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "autonomy/behaviours/avoid_behaviour.hpp"
+#include "autonomy/behaviors/avoid_behavior.hpp"
 #include "tools/command_line/declared_options.hpp"
 
 namespace autonomy {
@@ -19,8 +19,8 @@ struct AvoidOptions {
   void declare(command_line::DeclaredOptions& options);
   /// Nothing when the vehicle is not to avoid anything.
   std::optional<Avoidance> make() const;
-  /// Returns the behaviour, which avoids obstacles if that was chosen.
-  std::unique_ptr<HelmBehaviour> around(std::unique_ptr<HelmBehaviour> behaviour) const;
+  /// Returns the behavior, which avoids obstacles if that was chosen.
+  std::unique_ptr<HelmBehavior> around(std::unique_ptr<HelmBehavior> behavior) const;
 };
 
 }  // namespace autonomy

@@ -85,7 +85,7 @@ int balance(const Options& options) {
 void declare_gains(command_line::DeclaredOptions& declared, Options& options) {
   autonomy::Balance::Params& gains = options.balance;
   declared.number("balanced_tilt_deg", options.balanced_tilt_deg, -45, 45,
-                  "tilt, positive forward, at which its centre of mass is over its axle");
+                  "tilt, positive forward, at which its center of mass is over its axle");
   declared.number("kp_Nm_per_rad", gains.kp_Nm_per_rad, 0, 1e4, "torque of both wheels per tilt error");
   declared.number("kd_Nms_per_rad", gains.kd_Nms_per_rad, 0, 1e4, "torque of both wheels per tilt rate");
   declared.number("kv_rad_per_mps", gains.kv_rad_per_mps, 0, 10, "tilt setpoint per speed error");

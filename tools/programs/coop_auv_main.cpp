@@ -125,7 +125,7 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
 int run(int argc, char** argv) {
   Options options;
   options.participation.period_s = 0.5;
-  CLI::App app{"Steers an AUV that localises itself by dead reckoning and by one-way acoustic ranges.",
+  CLI::App app{"Steers an AUV that localizes itself by dead reckoning and by one-way acoustic ranges.",
                "shoal-coop-auv"};
   command_line::DeclaredOptions declared(app);
   declare(declared, options);

@@ -30,7 +30,7 @@ int drive(const autonomy::CoopCraft::Params& params, const autonomy::MarineOptio
   std::cerr << params.name << ": " << counts.sent << " frames sent, " << counts.received << " received, "
             << counts.bad_frames << " bad\n";
   if (counts.relayed > 0) std::cerr << params.name << ": " << counts.relayed << " states came by relay\n";
-  if (const std::string remark = craft.behaviour().remark(); !remark.empty())
+  if (const std::string remark = craft.behavior().remark(); !remark.empty())
     std::cerr << params.name << ": " << remark << '\n';
   return exit_code;
 }

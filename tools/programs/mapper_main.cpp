@@ -128,7 +128,7 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
 int run(int argc, char** argv) {
   Options options;
   options.participation.period_s = 1;
-  CLI::App app{"Maps a changing world with a lidar and localises its vehicle, in lockstep with `shoal run`.",
+  CLI::App app{"Maps a changing world with a lidar and localizes its vehicle, in lockstep with `shoal run`.",
                "shoal-mapper"};
   command_line::DeclaredOptions declared(app);
   declare(declared, options);

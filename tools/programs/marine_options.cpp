@@ -4,12 +4,12 @@
 #include <stdexcept>
 
 #include "autonomy/acomms/tdma.hpp"
-#include "autonomy/behaviours/formation_behaviour.hpp"
+#include "autonomy/behaviors/formation_behavior.hpp"
 
 namespace autonomy {
 
 void MarineOptions::declare(command_line::DeclaredOptions& options) {
-  // Behaviours, of which exactly one is chosen.
+  // Behaviors, of which exactly one is chosen.
   options.tuples(
       "waypoints_m", {"x", "y"}, 2, sim::any_place(), [this](const auto& lists) { waypoints_W = points_of(lists); },
       "route, east and north");
@@ -35,7 +35,7 @@ void MarineOptions::declare(command_line::DeclaredOptions& options) {
       .needs({"leader"});
   options.integer("formation_place", formation_place, 1, 1000, "place in the formation, counted from its leader")
       .needs({"leader"});
-  options.number("spacing_m", spacing_m, 1, 10'000, "distance between neighbours in the formation, along and across")
+  options.number("spacing_m", spacing_m, 1, 10'000, "distance between neighbors in the formation, along and across")
       .needs({"leader"});
   options
       .tuple(
@@ -43,13 +43,13 @@ void MarineOptions::declare(command_line::DeclaredOptions& options) {
           [this](const auto& numbers) { formation_offset = numbers; }, "place beside the leader, by its course")
       .needs({"leader"});
   options.exactly_one({"waypoints_m", "circle_m", "zigzag_m", "follow", "leader"});
-  // Parameters of all behaviours.
+  // Parameters of all behaviors.
   options.flag("loop", loop, "restart the route after its last waypoint; without it the vehicle stops there");
   options.number("speed_mps", speed_mps, 0.05, 10, "speed through the water; when it follows, the largest");
   sending.declare(options, "its state");
 }
 
-std::unique_ptr<HelmBehaviour> MarineOptions::make(const std::string& name) const {
+std::unique_ptr<HelmBehavior> MarineOptions::make(const std::string& name) const {
   if (!circle_m.empty()) return make_circle({circle_m[0], circle_m[1]}, circle_m[2], speed_mps);
   if (!zigzag_m.empty())
     return make_zigzag({zigzag_m[0], zigzag_m[1]}, {zigzag_m[2], zigzag_m[3]}, zigzag_m[4], zigzag_legs.value_or(1),
@@ -62,19 +62,19 @@ std::unique_ptr<HelmBehaviour> MarineOptions::make(const std::string& name) cons
   return make_route(waypoints_W, speed_mps, loop);
 }
 
-std::unique_ptr<HelmBehaviour> MarineOptions::make_place(const std::string& name) const {
+std::unique_ptr<HelmBehavior> MarineOptions::make_place(const std::string& name) const {
   if (leader == name) throw std::invalid_argument("'" + name + "' cannot lead itself");
   const bool by_offset = formation == "offset";
   if (by_offset == formation_offset.empty())
     throw std::invalid_argument(by_offset
                                     ? "the formation 'offset' needs formation_offset_m"
                                     : "formation_offset_m is for the formation 'offset', not '" + formation + "'");
-  FormationBehaviour::Params params;
+  FormationBehavior::Params params;
   params.leader = leader;
   params.offset_m = by_offset ? Vector2d(formation_offset[0], formation_offset[1])
                               : formation_offset_m(formation, formation_place, spacing_m);
   params.speed_max_mps = speed_mps;
-  return std::make_unique<FormationBehaviour>(params);
+  return std::make_unique<FormationBehavior>(params);
 }
 
 void AccessOptions::declare(command_line::DeclaredOptions& options, const std::string& what) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "autonomy/acomms/channel_access.hpp"
-#include "autonomy/behaviours/make_behaviour.hpp"
+#include "autonomy/behaviors/make_behavior.hpp"
 #include "tools/command_line/declared_options.hpp"
 
 namespace autonomy {
@@ -42,12 +42,12 @@ struct MarineOptions {
   AccessOptions sending;
 
   void declare(command_line::DeclaredOptions& options);
-  /// Returns the behaviour of the vehicle `name`.  Throws std::invalid_argument with the reason.
-  std::unique_ptr<HelmBehaviour> make(const std::string& name) const;
+  /// Returns the behavior of the vehicle `name`.  Throws std::invalid_argument with the reason.
+  std::unique_ptr<HelmBehavior> make(const std::string& name) const;
   ChannelAccess::Params access() const { return sending.access(); }
 
  private:
-  std::unique_ptr<HelmBehaviour> make_place(const std::string& name) const;
+  std::unique_ptr<HelmBehavior> make_place(const std::string& name) const;
 };
 
 /// Returns the waypoints of the columns x and y.

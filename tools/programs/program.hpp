@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "autonomy/behaviours/memory.hpp"
+#include "autonomy/behaviors/memory.hpp"
 #include "shoal/client.hpp"
 #include "tools/command_line/declared_options.hpp"
 

@@ -102,9 +102,9 @@ int flush_output(int exit_code) {
 
 int main(int argc, char** argv) {
   // Data is written to stdout, messages to stderr.
-  const bool colour = sim::may_use_colour(STDERR_FILENO);
+  const bool color = sim::may_use_color(STDERR_FILENO);
   spdlog::set_default_logger(
-      spdlog::stderr_color_mt("shoal", colour ? spdlog::color_mode::automatic : spdlog::color_mode::never));
+      spdlog::stderr_color_mt("shoal", color ? spdlog::color_mode::automatic : spdlog::color_mode::never));
   // On a terminal a message replaces the live line of progress.
   const bool clears = sim::can_move_cursor(STDERR_FILENO);
   spdlog::set_pattern(clears ? "\r\x1b[K%^%l%$: %v" : "%^%l%$: %v");

@@ -78,7 +78,7 @@ int run_loaded(const sim::LoadedWorld& loaded, RunArguments& arguments) {
   arguments.run.speed = parse_speed(arguments.speed);
   if (arguments.with_page && arguments.speed.empty() && loaded.config.run.speed == 0) {
     arguments.run.speed = 1;
-    sim::log_info("--view: the run goes at real time; --speed max lets it go as fast as possible");
+    sim::log_info("--view: running in real time; --speed max runs as fast as possible");
   }
   const Summary summary = run_world(loaded, arguments.run);
   if (!summary.error.empty()) std::cerr << "shoal: " << summary.error << '\n';
@@ -165,7 +165,7 @@ void add_output_options(CLI::App& command, RunArguments& arguments) {
           ->type_name("FILE");
   command
       .add_option("--record-mb", arguments.run.record_mb,
-                  "size of the record, MB: messages are left out evenly, but not what a replay needs")
+                  "size of the record, MB: above it messages are thinned evenly; those needed for replay are kept")
       ->type_name("MB")
       ->check(number_from(0.1, 1e9))
       ->needs(record);
@@ -202,8 +202,7 @@ void add_bus_options(CLI::App& command, RunArguments& arguments) {
       "--no-serial-ports", [&] { arguments.run.serial_ports = false; },
       "do not open the pseudo-terminals and FIFOs of devices");
   command
-      .add_option("--run-name", arguments.run.name,
-                  "what {run} stands for in paths of serial ports and commands of processes")
+      .add_option("--run-name", arguments.run.name, "value of {run} in paths of serial ports and commands of processes")
       ->type_name("NAME")
       ->capture_default_str();
 }

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "autonomy/behaviours/wander.hpp"
+#include "autonomy/behaviors/wander.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/planar_lidar_t.hpp"
 #include "shoal/twist_command_t.hpp"

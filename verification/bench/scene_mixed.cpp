@@ -13,7 +13,7 @@ namespace tools {
 
 namespace {
 
-/// Numbers of vehicles by kind: of ten, four rovers, two REMUS, one that localises itself, one Otter, the rest naive.
+/// Numbers of vehicles by kind: of ten, four rovers, two REMUS, one that localizes itself, one Otter, the rest naive.
 struct MixedFleet {
   explicit MixedFleet(int vehicles)
       : rovers(vehicles * 4 / 10), remus(vehicles * 2 / 10), nav(vehicles / 10), otters(vehicles / 10) {

@@ -5,7 +5,7 @@ namespace tools {
 
 BenchScene nav_scene() {
   return {"nav",
-          "REMUS 100 that localise themselves: autopilot, DVL, AHRS, pressure, GPS, silent modem, drifting clock",
+          "REMUS 100 that localize themselves: autopilot, DVL, AHRS, pressure, GPS, silent modem, drifting clock",
           {1, 10, 100, 1000},
           [](int vehicles) {
             return marine_fleet_text(

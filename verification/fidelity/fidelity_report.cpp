@@ -85,7 +85,7 @@ void plot(const std::filesystem::path& image, const FidelityResult& result) {
         "set terminal pngcairo size 840,440 font ',8'\nset output " +
             gnuplot_text(std::filesystem::absolute(image).string()) +
             "\nset key samplen 1 spacing 0.9\nset multiplot layout 2,3 title " +
-            gnuplot_text(result.of.name + ": reference grey, ours coloured") + " noenhanced\nset xlabel 'east (m)'\n" +
+            gnuplot_text(result.of.name + ": reference grey, ours colored") + " noenhanced\nset xlabel 'east (m)'\n" +
             "set ylabel 'north (m)'\nset size ratio -1\n" + fmt::format("set xtics {:g}\n", tics_of(result)) +
             panel("track", "3", {{"2", ""}}) +
             "set size noratio\nset xtics autofreq\nset xlabel 't (s)'\nset ylabel 'm'\nset yrange [] reverse\n" +

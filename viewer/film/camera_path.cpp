@@ -38,7 +38,7 @@ CameraKey CameraPath::at(double time_s) const {
   const CameraKey &from = keys[i - 1], &to = keys[i];
   const CameraKey &before = keys[i > 1 ? i - 2 : 0], &behind = keys[std::min(i + 1, keys.size() - 1)];
   const double span_s = to.at_s - from.at_s, u = (time_s - from.at_s) / span_s;
-  // Cubic Hermite curve whose slope at a key is that between its neighbours.
+  // Cubic Hermite curve whose slope at a key is that between its neighbors.
   const double h0 = (1 + 2 * u) * (1 - u) * (1 - u), h1 = u * u * (3 - 2 * u);
   const double g0 = u * (1 - u) * (1 - u) * span_s / (to.at_s - before.at_s);
   const double g1 = u * u * (u - 1) * span_s / (behind.at_s - from.at_s);

@@ -22,7 +22,7 @@ struct FilmOptions {
   bool split = false;                ///< the camera on board beside the one of `cameras`
   double from_s = 0;
   std::optional<double> until_s;  ///< of a log: its end; of a world: 10 s of film
-  double speed = 1;               ///< simulated time by time of the film
+  double speed = 1;               ///< playback speed: simulated seconds per second of film
   double fov_rad = sim::degrees_to_radians(60);
   int antialias = 1;
   std::optional<double> visibility_m = 60;  ///< none: the water is invisible

@@ -75,13 +75,13 @@ void OverlayCanvas::polyline(std::span<const sim::Vector3d> points_W, const Pen&
   for (std::size_t i = 1; i < points_W.size(); ++i) line(points_W[i - 1], points_W[i], pen);
 }
 
-void OverlayCanvas::ellipse(const sim::Vector3d& centre_W, const sim::Vector3d& axis_W,
+void OverlayCanvas::ellipse(const sim::Vector3d& center_W, const sim::Vector3d& axis_W,
                             const sim::Vector3d& other_axis_W, const Pen& pen) {
   constexpr int corners = 72;
   std::vector<sim::Vector3d> points_W;
   for (int i = 0; i <= corners; ++i) {
     const double angle_rad = 2 * std::numbers::pi * i / corners;
-    points_W.push_back(centre_W + std::cos(angle_rad) * axis_W + std::sin(angle_rad) * other_axis_W);
+    points_W.push_back(center_W + std::cos(angle_rad) * axis_W + std::sin(angle_rad) * other_axis_W);
   }
   polyline(points_W, pen);
 }
@@ -172,17 +172,17 @@ void OverlayCanvas::segment(const Place& from, const Place& to, const Pen& pen, 
   const int first = static_cast<int>(std::clamp(low, 0.0F, static_cast<float>(count)));
   const int last = static_cast<int>(std::clamp(high, -1.0F, static_cast<float>(count - 1)));
   for (int i = first; i <= last; ++i) {
-    const float centre = static_cast<float>(i) + 0.5F;
+    const float center = static_cast<float>(i) + 0.5F;
     const float extent = along(to) - along(from);
-    const float share = std::abs(extent) < 1e-3F ? 0.5F : std::clamp((centre - along(from)) / extent, 0.0F, 1.0F);
+    const float share = std::abs(extent) < 1e-3F ? 0.5F : std::clamp((center - along(from)) / extent, 0.0F, 1.0F);
     const float across = flat ? from.v + share * (to.v - from.v) : from.u + share * (to.u - from.u);
     const float reach = 1.5F * half + 1.5F;
     if (!(across > -reach && across < static_cast<float>(across_count) + reach)) continue;
     const int start = std::max(0, static_cast<int>(across - reach));
     const int end = std::min(across_count - 1, static_cast<int>(across + reach));
     for (int j = start; j <= end; ++j) {
-      // Share of the pixel that the line covers, by the distance of its centre from the line.
-      const float u = flat ? centre : static_cast<float>(j) + 0.5F, v = flat ? static_cast<float>(j) + 0.5F : centre;
+      // Share of the pixel that the line covers, by the distance of its center from the line.
+      const float u = flat ? center : static_cast<float>(j) + 0.5F, v = flat ? static_cast<float>(j) + 0.5F : center;
       float at = 0;
       if (length > 1e-3F)
         at = std::clamp(((u - from.u) * (to.u - from.u) + (v - from.v) * (to.v - from.v)) / (length * length), 0.0F,

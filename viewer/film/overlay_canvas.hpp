@@ -32,11 +32,11 @@ class OverlayCanvas {
   /// Draws a line through points of the world.
   void polyline(std::span<const sim::Vector3d> points_W, const Pen& pen);
   /// Draws an ellipse with two half axes.
-  void ellipse(const sim::Vector3d& centre_W, const sim::Vector3d& axis_W, const sim::Vector3d& other_axis_W,
+  void ellipse(const sim::Vector3d& center_W, const sim::Vector3d& axis_W, const sim::Vector3d& other_axis_W,
                const Pen& pen);
   /// Draws a disc of a diameter of `pen.width_px` at a point of the world.
   void dot(const sim::Vector3d& p_W, const Pen& pen);
-  /// Writes text, centred above a point of the world, and above the labels that were written there before.
+  /// Writes text, centered above a point of the world, and above the labels that were written there before.
   void label(const sim::Vector3d& p_W, const std::string& text, const Pen& pen);
   /// Writes text with its base line from (u, v) on, in pixels.
   void text(float u, float v, const std::string& text, const Pen& pen);

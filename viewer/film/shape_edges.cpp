@@ -20,14 +20,14 @@ using Lines = ShapeEdges::Lines;
 constexpr sim::Color movable_color{79, 180, 119}, fixed_color{139, 151, 163};  // as on the live page
 constexpr int circle_corners = 32;
 
-/// Adds an arc about a centre from `x` towards `y`, two vectors of the length of its radius.
-void add_arc(Lines& lines, const sim::Vector3d& centre, const sim::Vector3d& x, const sim::Vector3d& y,
+/// Adds an arc about a center from `x` towards `y`, two vectors of the length of its radius.
+void add_arc(Lines& lines, const sim::Vector3d& center, const sim::Vector3d& x, const sim::Vector3d& y,
              double angle_rad = 2 * std::numbers::pi) {
   const int corners = static_cast<int>(std::lround(circle_corners * angle_rad / (2 * std::numbers::pi)));
   std::vector<sim::Vector3d> points;
   for (int i = 0; i <= corners; ++i) {
     const double at_rad = angle_rad * i / corners;
-    points.push_back(centre + std::cos(at_rad) * x + std::sin(at_rad) * y);
+    points.push_back(center + std::cos(at_rad) * x + std::sin(at_rad) * y);
   }
   lines.push_back(std::move(points));
 }

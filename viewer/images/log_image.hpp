@@ -19,12 +19,12 @@ struct LogImage {
 };
 
 /// Draws the recording of a sensor on a channel of an LCM event log, as a PNG file:
-///   image_t         one image of a camera: colour, grey, JPEG and PNG unchanged; depth on a logarithmic scale, near is
-///   image_t         one image of a camera: colour, grey, JPEG and PNG unchanged; depth on a logarithmic scale, where
-///                   near is bright; labels in one colour each
+///   image_t         one image of a camera: color, grey, JPEG and PNG unchanged; depth on a logarithmic scale, near is
+///   image_t         one image of a camera: color, grey, JPEG and PNG unchanged; depth on a logarithmic scale, where
+///                   near is bright; labels in one color each
 ///   side_scan_t     all lines, one above the other, port on the left, over slant range
-///   multibeam_t     all pings, one above the other, coloured by depth
-///   point_cloud_t   one turn, seen from above, coloured by height
+///   multibeam_t     all pings, one above the other, colored by depth
+///   point_cloud_t   one turn, seen from above, colored by height
 ///   planar_lidar_t  one scan, seen from above
 /// All but the first are plotted by gnuplot.  Simulated time counts from the start of the run, which `sim.info` in the
 /// log contains; without it, from the first event.  Throws std::runtime_error with the reason.

@@ -17,7 +17,7 @@ struct Subject {
   std::string name;
   int group = -1;
   Eigen::AlignedBox3d box;
-  std::vector<sim::Vector3d> points_W;  ///< centres of its parts
+  std::vector<sim::Vector3d> points_W;  ///< centers of its parts
   bool is_vehicle = true;
 };
 
@@ -60,7 +60,7 @@ Eigen::AlignedBox3d framed(const std::vector<Subject>& subjects) {
   return {all.min() - margin, all.max() + margin};
 }
 
-/// Moves the camera back from the centre of a box until each of its corners is inside the image, with a small margin.
+/// Moves the camera back from the center of a box until each of its corners is inside the image, with a small margin.
 sim::Pose camera_pose_for(const Eigen::AlignedBox3d& box, const sim::Vector3d& back_W,
                           const sim::OpticsConfig& optics) {
   const sim::Pose X_WS = look_at(box.center() + back_W, box.center());

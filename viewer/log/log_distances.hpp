@@ -15,7 +15,7 @@
 namespace tools {
 
 /// Distances of each vehicle between two logs over time: of the frames of vehicles with the same name.  They are
-/// computed bit by bit, so that a page waits for nothing.
+/// computed incrementally, so that the page stays responsive.
 class LogDistances {
  public:
   /// Maximum number of times and of vehicles; those that the scene has first.

@@ -5,7 +5,7 @@
 const RGB = 859981650, GREY = 1497715271, MJPEG = 1196444237, GREY16 = 909199180, FLOAT32 = 842221382, PNG = 541544016;
 const PIXELS_MAX = 1 << 25;
 
-/** Colors from dark blue to yellow, readable for the colour-blind: six points of viridis (van der Walt and Smith). */
+/** Colors from dark blue to yellow, readable for the color-blind: six points of viridis (van der Walt and Smith). */
 const SCALE = [[68, 1, 84], [65, 68, 135], [42, 120, 142], [34, 168, 132], [122, 209, 81], [253, 231, 37]];
 
 /** Color of a share from 0 to 1, as [red, green, blue]. */

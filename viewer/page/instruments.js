@@ -176,7 +176,7 @@ export class Instruments {
                          name: range.name,
                          range_m: range.range_m,
                          true_m: range.true_m,
-                         centre: range.centre.toArray().map((x, i) => x + origin[i]),
+                         center: range.center.toArray().map((x, i) => x + origin[i]),
                        })),
       sonars: this.sonars?.probe() ?? [],
       distances: this.distances.probe(),

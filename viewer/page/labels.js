@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Text over the scene, on its own canvas: names, errors in metres, marks of sounds, the measuring tape.
+// Text over the scene, on its own canvas: names, errors in meters, marks of sounds, the measuring tape.
 import {Vector3} from './vendor/three.js';
 
 const LABELS_MAX = 80;
@@ -135,14 +135,14 @@ export class Labels {
   }
 
   /** Draws a horizontal circle about a point, such as the front of a sound. */
-  circle(centre, radius_m, color, width_px, alpha) {
+  circle(center, radius_m, color, width_px, alpha) {
     const c = this.context, point = new Vector3();
     this.inked = true;
     c.beginPath();
     let drawing = false;
     for (let i = 0; i <= 96; ++i) {
       const angle = 2 * Math.PI * i / 96;
-      point.set(centre.x + radius_m * Math.cos(angle), centre.y + radius_m * Math.sin(angle), centre.z);
+      point.set(center.x + radius_m * Math.cos(angle), center.y + radius_m * Math.sin(angle), center.z);
       const at = this.project(point, this.camera);
       if (at && drawing)
         c.lineTo(at[0], at[1]);
@@ -205,9 +205,9 @@ export function drawAnnotations(app) {
 /** The front of a sound at the depth of its source, as wide as the sound lasts. */
 function drawRing(app, {sound, outer_m, inner_m}) {
   const middle_m = (outer_m + inner_m) / 2;
-  const metre_px = app.camera.projectionMatrix.elements[5] * app.sides.regions[0].height / 2 /
+  const meter_px = app.camera.projectionMatrix.elements[5] * app.sides.regions[0].height / 2 /
       Math.max(1, app.camera.position.distanceTo(sound.at));
-  const width_px = Math.min(40, Math.max(1.5, (outer_m - inner_m) * metre_px));
+  const width_px = Math.min(40, Math.max(1.5, (outer_m - inner_m) * meter_px));
   const color = {ping: '#f0e442', answer: '#009e73', noise: '#cc79a7'}[sound.kind] ?? '#56b4e9';
   app.labels.circle(sound.at, middle_m, color, width_px, 0.38);
 }
@@ -224,9 +224,9 @@ export function drawNames(app, vehicles, estimates) {
   }
   if (!app.options.get('labels')) return;
   // Of many vehicles only those that are near have their names.
-  const metre_px = app.camera.projectionMatrix.elements[5] * app.sides.regions[0].height / 2;
+  const meter_px = app.camera.projectionMatrix.elements[5] * app.sides.regions[0].height / 2;
   for (const vehicle of vehicles) {
-    const seen_px = vehicle.radius_m * metre_px / vehicle.at.distanceTo(app.camera.position);
+    const seen_px = vehicle.radius_m * meter_px / vehicle.at.distanceTo(app.camera.position);
     if (vehicle === selected || (vehicles.length > MANY && seen_px < 6)) continue;
     labels.text(vehicle.at, vehicle.name, {color: vehicle.color, dy: [-16, -34, 12]});
   }

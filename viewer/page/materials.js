@@ -27,7 +27,7 @@ const VERTEX = /* glsl */ `
 varying vec3 vP, vNormalP, vWorld, vNormalW, vColor;
 uniform vec3 offset;
 void main() {
-  // Instances are scaled: positions in metres in the frame of the part.
+  // Instances are scaled: positions in meters in the frame of the part.
   vec3 size = vec3(1.0);
   mat4 toWorld = modelMatrix;
   #ifdef USE_INSTANCING

@@ -128,10 +128,10 @@ export class Zones {
         wall.push(...a, low, ...b, low, ...b, high, ...a, low, ...b, high, ...a, high);
       });
       this.root.add(new LineSegments(segments(rim), this.lines), new Mesh(segments(wall), this.walls));
-      const centre =
+      const center =
           corners.reduce((sum, c) => [sum[0] + c[0] / corners.length, sum[1] + c[1] / corners.length], [0, 0]);
       const text = zone.flags.includes('gps_denied') ? `${zone.name} ⊘ no GPS` : zone.name;
-      this.labels.push({text, at: new Vector3(centre[0], centre[1], high)});
+      this.labels.push({text, at: new Vector3(center[0], center[1], high)});
     }
   }
 }
@@ -212,9 +212,9 @@ export class SelectionRing {
     this.lines.visible = X_WV !== null && !hidden;
     if (!this.lines.visible) return;
     const at = new Vector3().setFromMatrixPosition(X_WV);
-    const metre_px =
+    const meter_px =
         camera.projectionMatrix.elements[5] * height_px / 2 / Math.max(0.01, at.distanceTo(camera.position));
-    const size_m = Math.max(1.25 * radius_m, 16 / metre_px);
+    const size_m = Math.max(1.25 * radius_m, 16 / meter_px);
     const yaw = Math.atan2(X_WV.elements[1], X_WV.elements[0]);
     this.lines.matrix.copy(new Matrix4().makeRotationZ(yaw).scale(new Vector3(size_m, size_m, size_m))).setPosition(at);
   }

@@ -62,7 +62,7 @@ export class VehicleList {
       if (!step) return;
       event.preventDefault();
       event.stopPropagation();
-      const next = this.neighbour(step);
+      const next = this.neighbor(step);
       if (next !== null) select(next);
     });
     $('search').addEventListener('input', () => this.filter());
@@ -101,7 +101,7 @@ export class VehicleList {
   shown() { return this.items.filter((item) => !item.hidden); }
 
   /** Name of the vehicle some places after the selected one. */
-  neighbour(step) {
+  neighbor(step) {
     const shown = this.shown();
     if (shown.length === 0) return null;
     const now = shown.findIndex((item) => item.dataset.name === this.selected);

@@ -67,21 +67,21 @@ export class Ranges {
     const mounted = this.poses.byChannel.get(message.channel);
     if (!mounted || !this.names.has(message.channel) || this.poses.isFuture(message.time_us)) return;
     const time_us = this.poses.sampleTime(message, mounted);
-    const X_WS = this.poses.sensorAt(mounted, time_us), centre = new Vector3().setFromMatrixPosition(X_WS);
+    const X_WS = this.poses.sensorAt(mounted, time_us), center = new Vector3().setFromMatrixPosition(X_WS);
     const origin_m = this.app.data.origin_m;
-    const c_mps = soundSpeedAt(this.app.data.water?.sound_speed, centre.z + origin_m[2]);
+    const c_mps = soundSpeedAt(this.app.data.water?.sound_speed, center.z + origin_m[2]);
     for (const {to, range_m, at} of rangesOf(message, c_mps)) {
       if (!(range_m > 0) || !Number.isFinite(range_m) || typeof to !== 'string') continue;
       // The signal left, or was answered, at the target before; light and radio need no time that matters.
       const travel_us = message.type === 'range_beacon_t' ? 0 : range_m / c_mps * 1e6;
       const target = this.poses.targetAt(to, time_us - travel_us);
-      const true_m = target ? centre.distanceTo(target) : null;
+      const true_m = target ? center.distanceTo(target) : null;
       const fix = at && at.every(Number.isFinite) ? new Vector3(...at).applyMatrix4(X_WS) : null;
       const name = `${mounted.vehicle} → ${to}`;
       this.ranges.delete(`${message.channel} ${to}`);
       this.ranges.set(
           `${message.channel} ${to}`,
-          {channel: message.channel, name, time_us: message.time_us, centre, range_m, target, true_m, fix});
+          {channel: message.channel, name, time_us: message.time_us, center, range_m, target, true_m, fix});
     }
     while (this.ranges.size > RANGES_MAX) this.ranges.delete(this.ranges.keys().next().value);
   }
@@ -97,30 +97,30 @@ export class Ranges {
   /** Draws on the canvas of the labels. */
   draw(labels, time_us) {
     for (const range of this.shown(time_us)) {
-      const {centre, range_m, target, true_m, fix} = range;
+      const {center, range_m, target, true_m, fix} = range;
       labels.inked = true;
       labels.context.globalAlpha = 0.3 + 0.7 * Math.min(1, range.fresh);
       // The sphere: its circle in the level of the receiver, and two that stand on it.
-      circle(labels, centre, range_m, [1, 0, 0], [0, 1, 0], 2);
-      circle(labels, centre, range_m, [1, 0, 0], [0, 0, 1], 0.8);
-      circle(labels, centre, range_m, [0, 1, 0], [0, 0, 1], 0.8);
+      circle(labels, center, range_m, [1, 0, 0], [0, 1, 0], 2);
+      circle(labels, center, range_m, [1, 0, 0], [0, 0, 1], 0.8);
+      circle(labels, center, range_m, [0, 1, 0], [0, 0, 1], 0.8);
       labels.context.globalAlpha = 1;
       if (fix) {
-        polyline(labels, [centre, fix], MEASURED, 1.5, []);
+        polyline(labels, [center, fix], MEASURED, 1.5, []);
         labels.text(fix, '✛ measured', {color: MEASURED, dy: 14});
       }
       if (!target) {
-        labels.text(centre, `○ ${range.name}: ${range_m.toFixed(2)} m`, {color: MEASURED, dy: 16});
+        labels.text(center, `○ ${range.name}: ${range_m.toFixed(2)} m`, {color: MEASURED, dy: 16});
         continue;
       }
-      polyline(labels, [centre, target], TRUE, 2, [6, 5]);
-      const middle = centre.clone().lerp(target, 0.5), error_m = range_m - true_m;
+      polyline(labels, [center, target], TRUE, 2, [6, 5]);
+      const middle = center.clone().lerp(target, 0.5), error_m = range_m - true_m;
       const sign = error_m < 0 ? '−' : '+';
       labels.text(
           middle, `○ ${range_m.toFixed(2)} m ┄ true ${true_m.toFixed(2)} m  ${sign}${Math.abs(error_m).toFixed(2)}`,
           {color: MEASURED, dx: -40, dy: 14});
       // The end of the measured range towards the target.
-      const end = target.clone().sub(centre).setLength(range_m).add(centre);
+      const end = target.clone().sub(center).setLength(range_m).add(center);
       dot(labels, end);
     }
   }
@@ -142,12 +142,12 @@ function polyline(labels, points, color, width_px, dash) {
   c.setLineDash([]);
 }
 
-/** A circle about a centre in the plane of two unit vectors. */
-function circle(labels, centre, radius_m, u, v, width_px) {
+/** A circle about a center in the plane of two unit vectors. */
+function circle(labels, center, radius_m, u, v, width_px) {
   const points = [...Array(STEPS + 1).keys()].map((i) => {
     const angle = 2 * Math.PI * i / STEPS, cos = radius_m * Math.cos(angle), sin = radius_m * Math.sin(angle);
     return new Vector3(
-        centre.x + u[0] * cos + v[0] * sin, centre.y + u[1] * cos + v[1] * sin, centre.z + u[2] * cos + v[2] * sin);
+        center.x + u[0] * cos + v[0] * sin, center.y + u[1] * cos + v[1] * sin, center.z + u[2] * cos + v[2] * sin);
   });
   polyline(labels, points, MEASURED, width_px, []);
 }

@@ -37,7 +37,7 @@ export function pressKey(app, event) {
   if (typing || event.ctrlKey || event.metaKey || event.altKey || $('keys').open) return;
   const onButton = event.target.tagName === 'BUTTON';
   const next = (step) => {
-    const name = app.list.neighbour(step);
+    const name = app.list.neighbor(step);
     if (name !== null) app.select(name);
   };
   const actions = {

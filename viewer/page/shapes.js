@@ -158,7 +158,7 @@ export class Assets {
   }
 }
 
-/** Returns a disc of triangles about the origin whose rings are close together near the centre. */
+/** Returns a disc of triangles about the origin whose rings are close together near the center. */
 export function radialGrid(rings, sectors, first_m, last_m) {
   const points = new Float32Array(3 * (1 + rings * sectors)), corners = [];
   const growth = Math.pow(last_m / first_m, 1 / (rings - 1));

@@ -4,7 +4,7 @@ import {element} from './panels.js';
 
 /** Figures of the metric, and what they are the margin of. */
 const MARGINS = [
-  ['static_m', 'static', 'Centre of mass, seen from above, to the edge of the support'],
+  ['static_m', 'static', 'Center of mass, seen from above, to the edge of the support'],
   ['zmp_m', 'zero-moment point', 'Mean of the contacts by their forces, to the edge of the support'],
   ['capture_m', 'capture point', 'Where a step would bring it to rest, to the edge of the support'],
 ];

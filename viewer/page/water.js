@@ -38,15 +38,15 @@ vec3 waveAt(vec2 p, float cell_m) {
 
 const VERTEX = /* glsl */ `
 ${WAVE_GLSL}
-uniform vec3 centre;
+uniform vec3 center;
 uniform float cells;
 varying vec3 vWorld;
 varying vec3 vWave;
 void main() {
-  vec2 p = position.xy + centre.xy;
+  vec2 p = position.xy + center.xy;
   float cell_m = cells * length(position.xy);
   vWave = waveAt(p, cell_m);
-  vWorld = vec3(p, centre.z + vWave.z);
+  vWorld = vec3(p, center.z + vWave.z);
   gl_Position = projectionMatrix * viewMatrix * vec4(vWorld, 1.0);
 }`;
 
@@ -97,12 +97,12 @@ export class Water {
       ...env,
       waves: {value: null},
       waveCount: {value: 0},
-      centre: {value: new Vector3()},
+      center: {value: new Vector3()},
       cells: {value: 0},
     };
     const rings = coarse ? 90 : 240, sectors = coarse ? 96 : 256;
     const growth = Math.pow(REACH_M / 0.3, 1 / (rings - 1));
-    // Size of a cell relative to its distance from the centre.
+    // Size of a cell relative to its distance from the center.
     this.uniforms.cells.value = Math.min(growth - 1, 2 * Math.PI / sectors);
     const material = new ShaderMaterial({
       uniforms: this.uniforms,
@@ -141,7 +141,7 @@ export class Water {
     if (!this.mesh.visible) return;
     this.setTime(time_us);
     const z = this.data.level_m - this.origin_m[2];
-    this.uniforms.centre.value.set(Math.round(camera.position.x), Math.round(camera.position.y), z);
+    this.uniforms.center.value.set(Math.round(camera.position.x), Math.round(camera.position.y), z);
   }
 
   setTime(time_us) {

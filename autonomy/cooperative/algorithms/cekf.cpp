@@ -9,15 +9,15 @@ namespace navigation {
 
 namespace {
 
-/// Centralised extended Kalman filter with delayed states (Webster, Eustice, Singh and Whitcomb, IJRR 31(8), 2012): the
+/// Centralized extended Kalman filter with delayed states (Webster, Eustice, Singh and Whitcomb, IJRR 31(8), 2012): the
 /// states of all vehicles, and a copy of a sender's state at each transmission that may still be received.
 ///
 ///     z = |x_r(TOA) - x_s(TOL)| + c_r - c_s,   H = (u', 1) on the receiver, (-u', -1) on the copy
 ///
 /// All measurements of all vehicles are used, with their true correlations: the reference for the others.
-class CentralisedEkf final : public TeamEstimator {
+class CentralizedEkf final : public TeamEstimator {
  public:
-  static constexpr const char* meaning = "centralised extended Kalman filter with delayed states: the reference";
+  static constexpr const char* meaning = "centralized extended Kalman filter with delayed states: the reference";
   /// A transmission is no longer received after this, 15 km.
   static constexpr double flight_s = 10;
 
@@ -58,7 +58,7 @@ class CentralisedEkf final : public TeamEstimator {
   std::map<std::pair<int, Time>, int> copies_;  ///< by sender and time of transmission
 };
 
-SHOAL_TEAM_ESTIMATOR("cekf", CentralisedEkf);
+SHOAL_TEAM_ESTIMATOR("cekf", CentralizedEkf);
 
 }  // namespace
 

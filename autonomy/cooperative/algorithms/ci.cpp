@@ -23,7 +23,7 @@ namespace {
 /// without inflation.
 class CovarianceIntersection final : public OwnFilterEstimator<CovarianceIntersection> {
  public:
-  static constexpr const char* meaning = "covariance intersection: never too sure, whatever the correlation";
+  static constexpr const char* meaning = "covariance intersection: consistent for any unknown correlation";
 
   void start(const Setup& setup) override {
     need_bytes(setup, "ci", position_bytes + 1);

@@ -15,7 +15,7 @@ using autonomy::MarineEkf;
 
 /// Filter of the program `coop_auv` as a plug-in: naive, but it doubts a beacon whose ranges contradict, and finds the
 /// error of the own clock behind contradictions of several beacons.  Slow errors of heading are a random walk of the
-/// bias with the same initial growth, and those of fixes are not modelled.
+/// bias with the same initial growth, and those of fixes are not modeled.
 class CoopAuvFilter final : public EstimatorOf<CoopAuvFilter> {
  public:
   static constexpr const char* meaning = "filter of the program coop_auv: naive, but it doubts beacons and clocks";

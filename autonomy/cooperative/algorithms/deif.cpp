@@ -32,15 +32,15 @@ ChainLink without_rounding(ChainLink link) {
   return link;
 }
 
-/// Decentralised extended information filter (Webster, Walls, Whitcomb and Eustice, IEEE T-RO 29(4), 2013).  A sender
+/// Decentralized extended information filter (Webster, Walls, Whitcomb and Eustice, IEEE T-RO 29(4), 2013).  A sender
 /// sends what it measured since its last packet, in information form, numbered; a receiver puts these links into its
-/// chain, and then has the same estimate as a centralised filter.  A packet has as many of the last links as fit, so
+/// chain, and then has the same estimate as a centralized filter.  A packet has as many of the last links as fit, so
 /// that so many losses in a row do no harm.  After more the chain is broken: the receiver begins a new one, of whose
-/// start it knows nothing, and its estimate is no longer the centralised one.
-class DecentralisedInformationFilter final : public EstimatorOf<DecentralisedInformationFilter> {
+/// start it knows nothing, and its estimate is no longer the centralized one.
+class DecentralizedInformationFilter final : public EstimatorOf<DecentralizedInformationFilter> {
  public:
   static constexpr const char* meaning =
-      "decentralised information filter: exact until too many packets are lost in a row";
+      "decentralized information filter: exact until too many packets are lost in a row";
   static constexpr std::size_t link_bytes = 4 * 16;
   static constexpr std::size_t head_bytes = 3;  ///< number of the newest link, and how many there are
   /// Standard deviation of a position of which nothing is known.
@@ -150,7 +150,7 @@ class DecentralisedInformationFilter final : public EstimatorOf<DecentralisedInf
   std::map<int, int> newest_;   ///< link known of each sender
 };
 
-SHOAL_ESTIMATOR("deif", DecentralisedInformationFilter);
+SHOAL_ESTIMATOR("deif", DecentralizedInformationFilter);
 
 }  // namespace
 

@@ -61,7 +61,7 @@ class Trajectory {
   int NumResiduals() const { return parameters_ + measured_; }
   bool operator()(const double* noise, double* residuals, double* jacobian) const;
   std::vector<VectorXd> states(const VectorXd& noise) const;
-  /// Returns the filter at the end, with the covariance of the linearised problem.
+  /// Returns the filter at the end, with the covariance of the linearized problem.
   JointFilter end(const VectorXd& noise) const;
 
  private:
@@ -186,12 +186,12 @@ JointFilter Trajectory::end(const VectorXd& noise) const {
 /// Fixed-lag smoother: the states of the last `lag_s` at each range and fix, by nonlinear least squares (Fallon,
 /// Papadopoulos, Leonard and Patrikalakis, IJRR 29(12), 2010), solved by the Levenberg-Marquardt method of Ceres.
 ///
-/// The oldest state is marginalised: m and P are then the prediction from its linearisation.  What others say is taken
-/// as independent, as by `naive`; a wrong start is found again by the relinearisation.
+/// The oldest state is marginalized: m and P are then the prediction from its linearization.  What others say is taken
+/// as independent, as by `naive`; a wrong start is found again by the relinearization.
 class FixedLagSmoother final : public OwnFilterEstimator<FixedLagSmoother> {
  public:
   static constexpr const char* meaning =
-      "fixed-lag smoother: relinearises the last minutes; what others say is independent";
+      "fixed-lag smoother: relinearizes the last minutes; what others say is independent";
   static constexpr double lag_s = 120;
   /// Fixes each second would make the problem large, while they need no smoothing.
   static constexpr std::size_t max_nodes = 40;

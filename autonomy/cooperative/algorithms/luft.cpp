@@ -11,7 +11,7 @@ namespace navigation {
 
 namespace {
 
-/// Recursive decentralised localisation with pairwise communication (Luft, Schubert, Roumeliotis and Burgard, IJRR
+/// Recursive decentralized localization with pairwise communication (Luft, Schubert, Roumeliotis and Burgard, IJRR
 /// 37(10), 2018).  Each vehicle keeps its own state and a factor s_ij for each other, with P_ij = s_ij s_ji':
 ///
 ///     motion       s_ij <- F_i s_ij
@@ -34,7 +34,7 @@ class PairwiseCommunication final : public TeamEstimator {
     const Eigen::MatrixXd F = own.filter.jacobian(number, time, v_W);
     const Vector2 before_W = own.filter.position(number);
     own.filter.move(number, time, v_W, q);
-    own.travelled_W += own.filter.position(number) - before_W;
+    own.traveled_W += own.filter.position(number) - before_W;
     for (auto& [other, s] : own.factors) s = (F * s).eval();
   }
   void fix(int vehicle, Time, const Vector2& p_W, double std_m) override {
@@ -46,7 +46,7 @@ class PairwiseCommunication final : public TeamEstimator {
   void sent(int vehicle, Time time) override {
     Own& own = vehicles_.at(vehicle);
     std::erase_if(own.sent_W, [&](const auto& each) { return seconds(time - each.first) > max_flight_s; });
-    own.sent_W[time] = own.travelled_W;
+    own.sent_W[time] = own.traveled_W;
   }
   void heard(int vehicle, const Heard& heard) override {
     if (!vehicles_.contains(heard.sender)) return;
@@ -54,7 +54,7 @@ class PairwiseCommunication final : public TeamEstimator {
     const auto sent = sender.sent_W.find(heard.payload_time);
     if (sent == sender.sent_W.end()) return;
     // The range refers to the place of the transmission.
-    const Vector2 since_W = sender.travelled_W - sent->second;
+    const Vector2 since_W = sender.traveled_W - sent->second;
     meet(vehicle, heard.sender, [&](JointFilter& both) {
       shift(both, 1, -since_W);
       const auto outcome = both.range(0, 1, heard.own_z_m - heard.sender_z_m, heard.range_m, heard.std_m);
@@ -76,7 +76,7 @@ class PairwiseCommunication final : public TeamEstimator {
   struct Own {
     JointFilter filter;
     std::map<int, Eigen::MatrixXd> factors;  ///< s_ij, by j; none: 0
-    Vector2 travelled_W = Vector2::Zero();   ///< since the start, by its motions
+    Vector2 traveled_W = Vector2::Zero();    ///< since the start, by its motions
     std::map<Time, Vector2> sent_W;          ///< that at each transmission
   };
 

@@ -14,7 +14,7 @@ namespace {
 /// vehicle and comes back is counted again, so that P becomes too small.
 class Naive final : public OwnFilterEstimator<Naive> {
  public:
-  static constexpr const char* meaning = "extended Kalman filter that takes what others say as independent";
+  static constexpr const char* meaning = "EKF that treats received estimates as independent";
 
   void start(const Setup& setup) override {
     need_bytes(setup, "naive", position_bytes);

@@ -6,11 +6,11 @@ namespace navigation {
 
 namespace {
 
-/// The filter of `naive` without the state of the clock: it takes all clocks as right, so that their errors become
-/// errors of the position.
+/// The filter of `naive` without the state of the clock: it assumes that all clocks are synchronized, so that their
+/// errors become errors of the position.
 class NaiveClockless final : public OwnFilterEstimator<NaiveClockless> {
  public:
-  static constexpr const char* meaning = "the same as naive, but it takes all clocks as right";
+  static constexpr const char* meaning = "the same as naive, but it assumes that all clocks are synchronized";
 
   void start(const Setup& setup) override {
     need_bytes(setup, "naive_clockless", position_bytes);

@@ -13,7 +13,7 @@ namespace {
 /// Origin state method (Walls and Eustice, IJRR 33(9), 2014, 10.1177/0278364914525856).  A sender knows the joint
 /// distribution of its origin, the start of the run, and its present position, from its own measurements only, and
 /// sends it with each packet.  From two such packets a receiver recovers what the sender measured between them,
-/// whatever was lost, and so has the sender in its filter with the true correlation: equal to the centralised filter of
+/// whatever was lost, and so has the sender in its filter with the true correlation: equal to the centralized filter of
 /// the two at each reception.  Ranges are not sent on.
 ///
 /// A sender whose fixes by satellite replaced all that it sent before is independent of that, and sends its position

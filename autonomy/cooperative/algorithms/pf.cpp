@@ -40,7 +40,7 @@ class ParticleStart final : public OwnFilterEstimator<ParticleStart> {
     const double east_m = std::sqrt(q(0, 0) * dt_s), north_m = std::sqrt(q(1, 1) * dt_s);
     for (Vector2& p_W : particles_)
       p_W += v_W * dt_s + Vector2(east_m * random_.gaussian(), north_m * random_.gaussian());
-    summarise(false);
+    summarize(false);
   }
   void fix(Time time, const Vector2& p_W, double std_m) override {
     if (!particles_.empty()) {
@@ -66,7 +66,7 @@ class ParticleStart final : public OwnFilterEstimator<ParticleStart> {
     has_heard_ = true;
     weigh(*sender, heard.range_m, dz_m, R);
     resample();
-    summarise(true);
+    summarize(true);
   }
   Bytes say(Time time, std::size_t) override { return payload_of(own_position(time)); }
 
@@ -113,7 +113,7 @@ class ParticleStart final : public OwnFilterEstimator<ParticleStart> {
     weights_.assign(count, 1.0 / count);
   }
   /// Sets the filter to mean and covariance of the particles, and ends them when it can continue alone.
-  void summarise(bool may_end) {
+  void summarize(bool may_end) {
     Vector2 mean = Vector2::Zero();
     for (std::size_t i = 0; i < count; ++i) mean += weights_[i] * particles_[i];
     Matrix2 P = 0.01 * Matrix2::Identity();

@@ -15,10 +15,10 @@ int index_in(const NavTeam& team, const std::string& name) {
 }  // namespace
 
 NavPilot::NavPilot(std::shared_ptr<const NavTeam> team, const Params& params,
-                   std::unique_ptr<autonomy::HelmBehaviour> behaviour)
+                   std::unique_ptr<autonomy::HelmBehavior> behavior)
     : params_(params),
       navigation_(team, index_in(*team, params.name), *params.algorithm, params.navigation),
-      behaviour_(std::move(behaviour)),
+      behavior_(std::move(behavior)),
       access_(params.access, params.name) {}
 
 void NavPilot::receive(const shoal::acoustic_received_t& packet) {
@@ -58,8 +58,8 @@ shoal::helm_command_t NavPilot::helm(const Estimate& estimate) {
   shoal::helm_command_t helm = at_rest();
   const bool known_start = params_.navigation.start.p_W.has_value();
   const bool waits = !known_start && seconds(now - navigation_.reports().setup()->time) < params_.surface_s;
-  if (waits || behaviour_->finished()) return helm;
-  const autonomy::Course course = behaviour_->steer({now, estimate.p_W, estimate.v_W});
+  if (waits || behavior_->finished()) return helm;
+  const autonomy::Course course = behavior_->steer({now, estimate.p_W, estimate.v_W});
   helm.speed_mps = course.speed_mps;
   helm.heading_rad = course.heading_rad;
   if (params_.depth_m > 0) helm.depth_m = params_.depth_m;

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "autonomy/acomms/channel_access.hpp"
-#include "autonomy/behaviours/cloned.hpp"
-#include "autonomy/behaviours/helm_behaviour.hpp"
+#include "autonomy/behaviors/cloned.hpp"
+#include "autonomy/behaviors/helm_behavior.hpp"
 #include "autonomy/cooperative/driver/vehicle_navigation.hpp"
 #include "shoal/estimate_t.hpp"
 #include "shoal/helm_command_t.hpp"
@@ -17,7 +17,7 @@
 namespace navigation {
 
 /// Autonomy of a marine vehicle that steers by its estimate: it waits for its first fix (unless the start is known),
-/// stays at the surface for some time, dives, follows its behaviour, and surfaces.  A surface craft has depth 0.  A
+/// stays at the surface for some time, dives, follows its behavior, and surfaces.  A surface craft has depth 0.  A
 /// value; a function of its reports in their order.
 class NavPilot {
  public:
@@ -40,8 +40,7 @@ class NavPilot {
   };
 
   /// Throws std::invalid_argument when the vehicle is not in the team, or the algorithm cannot work.
-  NavPilot(std::shared_ptr<const NavTeam> team, const Params& params,
-           std::unique_ptr<autonomy::HelmBehaviour> behaviour);
+  NavPilot(std::shared_ptr<const NavTeam> team, const Params& params, std::unique_ptr<autonomy::HelmBehavior> behavior);
 
   template <class Message>
   void receive(const Message& report) {
@@ -60,7 +59,7 @@ class NavPilot {
 
   Params params_;
   VehicleNavigation navigation_;
-  autonomy::Cloned<autonomy::HelmBehaviour> behaviour_;
+  autonomy::Cloned<autonomy::HelmBehavior> behavior_;
   autonomy::ChannelAccess access_;
   Time estimated_at_ = 0;
   Counts counts_;

@@ -57,7 +57,7 @@ class Navigator {
   /// Starts the estimator.  Throws std::invalid_argument as Estimator::start().
   Navigator(const Algorithm& algorithm, const Setup& setup);
 
-  /// Tells an event.  Returns false, with no effect, when it is too old.
+  /// Adds an event.  Returns false, with no effect, when it is older than window_s.
   bool add(NavEvent event);
   /// Returns the payload of a frame that is transmitted at `time`.
   Bytes say(Time time, std::size_t max_bytes);

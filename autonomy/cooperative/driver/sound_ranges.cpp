@@ -11,7 +11,7 @@ namespace {
 
 constexpr double layer_m = 1;
 constexpr double deepest_m = 2000;
-/// Of the layers in which rays are arcs: ranges of 2 km are right to some millimetres.
+/// Of the layers in which rays are arcs: ranges of 2 km are right to some millimeters.
 constexpr double speed_tolerance_mps = 1e-3;
 
 }  // namespace

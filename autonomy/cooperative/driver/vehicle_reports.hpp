@@ -50,7 +50,8 @@ class VehicleReports {
   /// the payload of the frame; nothing when the frame has none that is new.
   std::optional<NavEvent> seen_by(const shoal::acoustic_received_t& packet, const NavFrame& frame);
 
-  /// The sender is where it was at its newest stamp before the transmission, up to some hundredths of a second before.
+  /// The sender's position is that of its newest stamp before the transmission, up to some hundredths of a second
+  /// before.
   static constexpr double min_range_std_m = 0.1;
 
   /// Set with the event from which the estimators start.

@@ -228,7 +228,7 @@ void JointFilter::move_linear(int part, const Matrix2& F, const Vector2& offset,
   P_.middleRows<2>(o) = (F * P_.middleRows<2>(o)).eval();
   P_.middleCols<2>(o) = (P_.middleCols<2>(o) * F.transpose()).eval();
   P_.block<2, 2>(o, o) += Q;
-  symmetrise();
+  symmetrize();
 }
 
 JointFilter::Outcome JointFilter::fix(int vehicle, const Vector2& p_W, double std_m, Eigen::MatrixXd* kept) {
@@ -332,7 +332,7 @@ JointFilter::RelativeRow JointFilter::relative_row(const Part& own, const Positi
     }
     bearing_rad += heading_error(*observer);
   }
-  // Where they are, by their positions and by the sight: the measurement is linearised at what both give together.
+  // Where they are, by their positions and by the sight: the measurement is linearized at what both give together.
   const Vector2 predicted_W = other.p_W - x_.segment<2>(own.offset);
   const Vector2 u_seen(std::cos(bearing_rad), std::sin(bearing_rad));
   const Matrix2 R_seen =
@@ -392,7 +392,7 @@ void JointFilter::update(const Eigen::VectorXd& H, double innovation, double R) 
   for (int i = 0; i < size(); ++i)
     if (H[i] != 0) PH += H[i] * P_.col(i);
   P_.noalias() -= (PH - R * K) * K.transpose();
-  symmetrise();
+  symmetrize();
 }
 
 Eigen::MatrixXd JointFilter::update(const Eigen::MatrixXd& H, const Eigen::VectorXd& innovation,
@@ -403,7 +403,7 @@ Eigen::MatrixXd JointFilter::update(const Eigen::MatrixXd& H, const Eigen::Vecto
   x_ += K * innovation;
   const Eigen::MatrixXd A = Eigen::MatrixXd::Identity(size(), size()) - K * H;
   P_ = A * P_ * A.transpose() + K * R * K.transpose();
-  symmetrise();
+  symmetrize();
   return A;
 }
 
@@ -415,7 +415,7 @@ void JointFilter::inform(int part, const Matrix2& L, const Vector2& eta) {
   const Matrix2 M = (I + L * P_.block<2, 2>(o, o)).inverse();
   x_ += PH * M * (eta - L * p);
   P_ -= (PH * M * L * PH.transpose()).eval();
-  symmetrise();
+  symmetrize();
 }
 
 Estimate JointFilter::now(int vehicle, Time time) const {
@@ -429,7 +429,7 @@ Estimate JointFilter::now(int vehicle, Time time) const {
   return estimate;
 }
 
-void JointFilter::symmetrise() {
+void JointFilter::symmetrize() {
   P_ = (0.5 * (P_ + P_.transpose())).eval();
 }
 

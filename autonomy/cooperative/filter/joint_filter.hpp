@@ -42,7 +42,7 @@ class JointFilter {
   int copy(int part);
   /// Returns a filter of the parts of this one, and then those of another, which is independent.
   JointFilter joined_with(const JointFilter& other) const;
-  /// Marginalises a copy.  Its number may be used again.
+  /// Marginalizes a copy.  Its number may be used again.
   void remove(int part);
 
   /// Moves a vehicle with a measured velocity until `time`, with white noise q (m^2/s).  Both are in the axes of the
@@ -61,12 +61,12 @@ class JointFilter {
   /// update.
   Outcome fix(int vehicle, const Vector2& p_W, double std_m, Eigen::MatrixXd* kept = nullptr);
 
-  /// Linearised range z = |(p_a - p_b, dz)| + c_a - c_b between two parts, or to a position outside of the filter.
+  /// Linearized range z = |(p_a - p_b, dz)| + c_a - c_b between two parts, or to a position outside of the filter.
   struct RangeRow {
     Eigen::VectorXd H;
     double predicted_m = 0;
     Vector2 u = Vector2::Zero();  ///< horizontal part of the unit vector from the other one
-    double bend_variance_m2 = 0;  ///< points of equal range are on a circle: 3 (m / 2r)^2, m = variance sideways
+    double bend_variance_m2 = 0;  ///< second-order term of the range, 3 (m / 2r)^2, m = cross-range variance
   };
   RangeRow range_row(int own, int other, double dz_m) const;
   RangeRow range_row(int own, const Position& other, double dz_m) const;
@@ -75,8 +75,8 @@ class JointFilter {
   /// Updates with a range to a position, whose error is regarded as independent; `more_variance_m2`: of its clock.
   Outcome range(int own, const Position& other, double dz_m, double range_m, double std_m, double more_variance_m2 = 0);
 
-  /// Linearised measurement by a sensor: (horizontal range, bearing by the heading of the observer) of another part or
-  /// a position.  A position has no heading error.  It is linearised at the displacement that positions and sight give
+  /// Linearized measurement by a sensor: (horizontal range, bearing by the heading of the observer) of another part or
+  /// a position.  A position has no heading error.  It is linearized at the displacement that positions and sight give
   /// together, not at the predicted one, which may be wrong by more than the distance: the first iteration of an
   /// iterated filter (Bell and Cathey, IEEE Trans. Automatic Control 38(2), 1993).
   struct RelativeRow {
@@ -150,7 +150,7 @@ class JointFilter {
   /// Applies the Jacobian to the lines of a matrix, its rows or its columns.
   template <class Line>
   static void apply(const Part& part, const Step& step, const Line& line);
-  void symmetrise();
+  void symmetrize();
 
   double sound_speed_mps_;
   double gate_;

@@ -99,9 +99,9 @@ class OwnOnLand {
     run_.payload_bytes[static_cast<std::size_t>(vehicle)] += payload.size();
     return payload;
   }
-  /// Refers a sight to where the other vehicle was before it travelled this distance.
-  static void move_back(Relative& seen, const Vector2& travelled_W) {
-    const Vector2 d_W = seen.range_m * Vector2(std::cos(seen.bearing_rad), std::sin(seen.bearing_rad)) - travelled_W;
+  /// Refers a sight to where the other vehicle was before it traveled this distance.
+  static void move_back(Relative& seen, const Vector2& traveled_W) {
+    const Vector2 d_W = seen.range_m * Vector2(std::cos(seen.bearing_rad), std::sin(seen.bearing_rad)) - traveled_W;
     seen.range_m = d_W.norm();
     seen.bearing_rad = std::atan2(d_W.y(), d_W.x());
   }

@@ -11,7 +11,7 @@ namespace navigation {
 ///
 /// The vehicles start at their places in the world.  Whatever a vehicle sends by radio becomes a frame with the payload
 /// of the algorithm and the velocity of the sender; the next sight of the sender within 3 s has this payload, and is
-/// corrected by the distance that the sender travelled since.  Further sights have no payload.  In a record without
+/// corrected by the distance that the sender traveled since.  Further sights have no payload.  In a record without
 /// radio messages every sight has a payload of that instant.  A TeamEstimator needs no payloads, and uses every sight.
 ///
 /// Throws std::invalid_argument when the algorithm cannot work.

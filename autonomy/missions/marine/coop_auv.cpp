@@ -39,9 +39,9 @@ constexpr double max_travel_s = 60;
 
 }  // namespace
 
-CoopAuv::CoopAuv(const Params& params, std::unique_ptr<HelmBehaviour> behaviour)
+CoopAuv::CoopAuv(const Params& params, std::unique_ptr<HelmBehavior> behavior)
     : params_(params),
-      behaviour_(std::move(behaviour)),
+      behavior_(std::move(behavior)),
       access_(params.access, params.name),
       desired_depth_m_(params.depth_m) {
   const MarineEkf checked(0, Vector2d::Zero(), 1, params.filter);
@@ -176,7 +176,7 @@ void CoopAuv::receive(const shoal::acoustic_received_t& packet) {
     ++counts_.relayed;
     return;
   }
-  behaviour_->receive_state(packet.source, motion_of(*state));
+  behavior_->receive_state(packet.source, motion_of(*state));
   if (cooperative_ && params_.use_ranges) use_range(packet, *state);
 }
 
@@ -190,7 +190,7 @@ void CoopAuv::receive(const shoal::multibeam_t& ping) {
   note_time(ping.utime);
   if (!cooperative_ || ping.count < 2) return;
   const double step_rad = ping.angles_rad[1] - ping.angles_rad[0];
-  behaviour_->receive_scan({scan_of(ping), ping.angles_rad[0], step_rad}, motion_at(steered_by(), ping.utime));
+  behavior_->receive_scan({scan_of(ping), ping.angles_rad[0], step_rad}, motion_at(steered_by(), ping.utime));
 }
 
 OrderRefusal CoopAuv::refusal_of(const AcousticOrder& order) const {
@@ -207,11 +207,11 @@ void CoopAuv::execute(const AcousticOrder& order) {
     ++counts_.orders_refused;
     return;
   }
-  CircleBehaviour::Params hold;
-  hold.centre_W = {order.east_m, order.north_m};
+  CircleBehavior::Params hold;
+  hold.center_W = {order.east_m, order.north_m};
   hold.radius_m = params_.hold_radius_m;
   hold.speed_mps = order.speed_mps;
-  behaviour_ = std::make_unique<HoldBehaviour>(hold);
+  behavior_ = std::make_unique<HoldBehavior>(hold);
   desired_depth_m_ = order.depth_m;
   order_ = order.number;
   ++counts_.orders;
@@ -244,7 +244,7 @@ void CoopAuv::use_range(const shoal::acoustic_received_t& packet, const Acoustic
 void CoopAuv::update_phase() {
   const bool has_waited = first_fix_utime_ && seconds(utime_ - *first_fix_utime_) >= params_.surface_s;
   if (phase_ == Phase::at_surface && (has_waited || params_.start_W)) phase_ = Phase::under_way;
-  if (phase_ == Phase::under_way && behaviour_->finished()) phase_ = Phase::done;
+  if (phase_ == Phase::under_way && behavior_->finished()) phase_ = Phase::done;
 }
 
 CoopAuv::Decision CoopAuv::step() {
@@ -267,7 +267,7 @@ CoopAuv::Decision CoopAuv::step() {
 shoal::helm_command_t CoopAuv::helm() {
   shoal::helm_command_t helm{utime_, 0, unknown, 0, unknown};
   if (phase_ != Phase::under_way) return helm;
-  const Course course = behaviour_->steer(motion_at(steered_by(), utime_));
+  const Course course = behavior_->steer(motion_at(steered_by(), utime_));
   helm.speed_mps = course.speed_mps;
   helm.heading_rad = course.heading_rad;
   helm.depth_m = desired_depth_m_;

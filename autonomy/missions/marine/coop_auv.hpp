@@ -10,8 +10,8 @@
 #include "autonomy/acomms/acoustic_frame.hpp"
 #include "autonomy/acomms/channel_access.hpp"
 #include "autonomy/acomms/state_packet.hpp"
-#include "autonomy/behaviours/cloned.hpp"
-#include "autonomy/behaviours/helm_behaviour.hpp"
+#include "autonomy/behaviors/cloned.hpp"
+#include "autonomy/behaviors/helm_behavior.hpp"
 #include "autonomy/filters/marine_ekf.hpp"
 #include "shoal/acoustic_received_t.hpp"
 #include "shoal/compass_t.hpp"
@@ -26,9 +26,9 @@
 
 namespace autonomy {
 
-/// AUV that localises itself by DVL, heading and depth, and by one-way ranges to vehicles that report their positions
+/// AUV that localizes itself by DVL, heading and depth, and by one-way ranges to vehicles that report their positions
 /// by acoustic modem.  In addition it keeps an estimate by dead reckoning only.  It waits at the surface for GPS,
-/// dives, follows its behaviour, and surfaces.  A pure function of its reports in their order; its time is that of
+/// dives, follows its behavior, and surfaces.  A pure function of its reports in their order; its time is that of
 /// their stamps, by the vehicle's own clock.
 class CoopAuv {
  public:
@@ -77,7 +77,7 @@ class CoopAuv {
   enum class Phase { waiting_for_fix, at_surface, under_way, done };
 
   /// Throws std::invalid_argument for a number of states that the filter does not support.
-  CoopAuv(const Params& params, std::unique_ptr<HelmBehaviour> behaviour);
+  CoopAuv(const Params& params, std::unique_ptr<HelmBehavior> behavior);
 
   void receive(const shoal::dvl_t& dvl);
   void receive(const shoal::ins_t& attitude);
@@ -85,7 +85,7 @@ class CoopAuv {
   void receive(const shoal::pressure_t& pressure);
   void receive(const shoal::gps_data_t& fix);
   void receive(const shoal::acoustic_received_t& packet);
-  /// Processes a ping of the forward sonar, a multibeam sonar whose swath is horizontal and centred on the bow.
+  /// Processes a ping of the forward sonar, a multibeam sonar whose swath is horizontal and centered on the bow.
   void receive(const shoal::multibeam_t& ping);
   /// Computes the commands after all reports up to now.
   Decision step();
@@ -116,7 +116,7 @@ class CoopAuv {
   std::optional<shoal::modem_send_t> state_frame();
 
   Params params_;
-  Cloned<HelmBehaviour> behaviour_;
+  Cloned<HelmBehavior> behavior_;
   ChannelAccess access_;
   DirectStates direct_;
   int order_ = 0;          ///< number of the last one executed

@@ -17,8 +17,8 @@ constexpr double oldest_yaw_s = 2;
 
 }  // namespace
 
-CoopCraft::CoopCraft(const Params& params, std::unique_ptr<HelmBehaviour> behaviour)
-    : params_(params), behaviour_(std::move(behaviour)), access_(params.access, params.name) {}
+CoopCraft::CoopCraft(const Params& params, std::unique_ptr<HelmBehavior> behavior)
+    : params_(params), behavior_(std::move(behavior)), access_(params.access, params.name) {}
 
 void CoopCraft::receive(const shoal::gps_data_t& fix) {
   utime_ = fix.utime;  // the time stamp is used with or without a fix: a clock may be set back
@@ -41,7 +41,7 @@ void CoopCraft::receive(const shoal::acoustic_received_t& packet) {
   }
   ++counts_.received;
   if (direct_.is_direct(packet, *state))
-    behaviour_->receive_state(packet.source, motion_of(*state));
+    behavior_->receive_state(packet.source, motion_of(*state));
   else
     ++counts_.relayed;
 }
@@ -63,7 +63,7 @@ Motion CoopCraft::motion_at(std::int64_t utime) const {
 
 void CoopCraft::receive(const shoal::planar_lidar_t& scan) {
   if (!motion_ || std::abs(seconds(scan.utime - motion_->utime)) > params_.oldest_fix_s) return;
-  behaviour_->receive_scan({scan.ranges, scan.rad0, scan.radstep}, motion_at(scan.utime));
+  behavior_->receive_scan({scan.ranges, scan.rad0, scan.radstep}, motion_at(scan.utime));
 }
 
 CoopCraft::Decision CoopCraft::step() {
@@ -75,7 +75,7 @@ CoopCraft::Decision CoopCraft::step() {
   if (!motion_) return decision;
   decision.remark = remark();
   if (has_fix) {
-    const Course course = behaviour_->steer(motion_at(motion_->utime));
+    const Course course = behavior_->steer(motion_at(motion_->utime));
     helm.speed_mps = course.speed_mps;
     helm.heading_rad = course.heading_rad;
     decision.estimate = estimate();
@@ -89,7 +89,7 @@ CoopCraft::Decision CoopCraft::step() {
 std::string CoopCraft::remark() {
   if (!patient_since_ || utime_ < *patient_since_) patient_since_ = utime_;
   const double waited_s = seconds(utime_ - *patient_since_);
-  const std::string text = behaviour_->remark();
+  const std::string text = behavior_->remark();
   if (remarked_ || text.empty() || waited_s < params_.timeout_s) return {};
   remarked_ = true;
   return "after " + std::to_string(std::llround(waited_s)) + " s: " + text;

@@ -8,8 +8,8 @@
 
 #include "autonomy/acomms/channel_access.hpp"
 #include "autonomy/acomms/state_packet.hpp"
-#include "autonomy/behaviours/cloned.hpp"
-#include "autonomy/behaviours/helm_behaviour.hpp"
+#include "autonomy/behaviors/cloned.hpp"
+#include "autonomy/behaviors/helm_behavior.hpp"
 #include "shoal/acoustic_received_t.hpp"
 #include "shoal/estimate_t.hpp"
 #include "shoal/gps_data_t.hpp"
@@ -30,7 +30,7 @@ class CoopCraft {
     double transducer_depth_m = 0.5;  ///< of the modem, below the surface
     double oldest_fix_s = 3;          ///< maximum age of a fix
     double period_s = 0.5;            ///< between two calls of step()
-    double timeout_s = 60;            ///< time after which it reports what its behaviour waits for
+    double timeout_s = 60;            ///< time after which it reports what its behavior waits for
     ChannelAccess::Params access;
   };
   struct Decision {
@@ -47,7 +47,7 @@ class CoopCraft {
     int bad_frames = 0;
   };
 
-  CoopCraft(const Params& params, std::unique_ptr<HelmBehaviour> behaviour);
+  CoopCraft(const Params& params, std::unique_ptr<HelmBehavior> behavior);
 
   void receive(const shoal::gps_data_t& fix);
   void receive(const shoal::acoustic_received_t& packet);
@@ -57,7 +57,7 @@ class CoopCraft {
   Decision step();
 
   const Counts& counts() const { return counts_; }
-  const HelmBehaviour& behaviour() const { return *behaviour_; }
+  const HelmBehavior& behavior() const { return *behavior_; }
 
  private:
   shoal::estimate_t estimate() const;
@@ -67,7 +67,7 @@ class CoopCraft {
   Motion motion_at(std::int64_t utime) const;
 
   Params params_;
-  Cloned<HelmBehaviour> behaviour_;
+  Cloned<HelmBehavior> behavior_;
   ChannelAccess access_;
   DirectStates direct_;
   std::int64_t utime_ = 0;  ///< newest stamp

@@ -31,12 +31,12 @@ constexpr double dive_current_std_mps = 0.1;
 constexpr int beams_of_ping = 9;
 constexpr double depth_std_m = 0.1;
 
-RouteBehaviour route_of(const std::vector<Vector2d>& points_W, double speed_mps, double reached_m) {
-  RouteBehaviour::Params params;
+RouteBehavior route_of(const std::vector<Vector2d>& points_W, double speed_mps, double reached_m) {
+  RouteBehavior::Params params;
   params.speed_mps = speed_mps;
   params.lookahead_m = 12;
   params.reached_m = reached_m;
-  return RouteBehaviour(points_W, params);
+  return RouteBehavior(points_W, params);
 }
 
 }  // namespace
@@ -152,7 +152,7 @@ void Ranger::receive(const shoal::multibeam_t& ping) {
   }
 }
 
-RouteBehaviour* Ranger::route() {
+RouteBehavior* Ranger::route() {
   switch (phase_) {
     case Phase::at_surface:
       return &surface_;
@@ -207,7 +207,7 @@ shoal::helm_command_t Ranger::helm() {
     helm.speed_mps = has_fix && q_GB_ ? params_.speed_mps : 0;
     return helm;
   }
-  RouteBehaviour* const path = route();
+  RouteBehavior* const path = route();
   if (path == nullptr || !filter_) return helm;
   const double yaw_rad = filter_->yaw_rad(gyro_yaw_rad());
   const Vector2d v_W = turned({speed_mps_, 0}, yaw_rad) + filter_->current_W();

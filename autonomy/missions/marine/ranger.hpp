@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "autonomy/acomms/channel_access.hpp"
-#include "autonomy/behaviours/helm_behaviour.hpp"
+#include "autonomy/behaviors/helm_behavior.hpp"
 #include "autonomy/filters/wall_ekf.hpp"
 #include "shoal/estimate_t.hpp"
 #include "shoal/gps_data_t.hpp"
@@ -62,7 +62,7 @@ class Ranger {
   void receive(const shoal::imu_t& imu);
   void receive(const shoal::pressure_t& pressure);
   void receive(const shoal::sonar_range_t& altitude);
-  /// A ping of the forward sonar, a multibeam sonar whose swath is horizontal and centred on the bow.
+  /// A ping of the forward sonar, a multibeam sonar whose swath is horizontal and centered on the bow.
   void receive(const shoal::multibeam_t& ping);
   /// Computes the commands after all reports up to now.
   Decision step();
@@ -76,13 +76,13 @@ class Ranger {
   void predict(std::int64_t utime);
   void start(const shoal::gps_data_t& fix, const Vector2d& p_W);
   void update_phase();
-  RouteBehaviour* route();
+  RouteBehavior* route();
   shoal::helm_command_t helm();
   shoal::estimate_t estimate() const;
   std::optional<shoal::modem_send_t> state_frame();
 
   Params params_;
-  RouteBehaviour surface_, dive_, rise_;
+  RouteBehavior surface_, dive_, rise_;
   ChannelAccess access_;
   Phase phase_ = Phase::waiting_for_fix;
   std::int64_t utime_ = 0;  ///< newest stamp

@@ -36,7 +36,7 @@ class Balance {
  public:
   struct Params {
     double period_s = 0.01;               ///< between two calls of step()
-    double balanced_tilt_rad = -0.17323;  ///< where the centre of mass is over the axle
+    double balanced_tilt_rad = -0.17323;  ///< where the center of mass is over the axle
     double kp_Nm_per_rad = 300;           ///< both wheels together; less than m g l = 129 cannot balance it
     double kd_Nms_per_rad = 60;
     double kv_rad_per_mps = 0.12;

@@ -7,7 +7,7 @@
 
 namespace autonomy {
 
-/// Inverted pendulum on two wheels that roll without slip, linearised about its balance.  With the displacement of the
+/// Inverted pendulum on two wheels that roll without slip, linearized about its balance.  With the displacement of the
 /// axle x and the tilt a from balance, both forwards, and the torque T of both motors (Lagrange's equations of body and
 /// wheels):
 ///
@@ -15,7 +15,7 @@ namespace autonomy {
 ///     m l x'' + J a'' = m g l a - T
 struct BalanceModel {
   double mass_kg = 72.7;          ///< m: of the body
-  double height_m = 0.18114;      ///< l: of its centre of mass over the axle, when balanced
+  double height_m = 0.18114;      ///< l: of its center of mass over the axle, when balanced
   double inertia_kgm2 = 8.92056;  ///< J: of the body about the axle
   double wheels_kg = 10;          ///< of both
   double wheels_kgm2 = 0.27848;   ///< of both, about the axle

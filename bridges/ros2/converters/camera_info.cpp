@@ -41,7 +41,7 @@ std::vector<double> numbers_of(const sim::ConfigNode& lens, std::string_view key
   return numbers;
 }
 
-/// The lens of a camera of Shoal.  Positions in the image count from the centre of the first pixel, as in OpenCV.
+/// The lens of a camera of Shoal.  Positions in the image count from the center of the first pixel, as in OpenCV.
 bool write_camera_info(const shoal::image_t& message, std::string_view channel, CdrWriter& out) {
   const sim::ConfigNode lens = lens_of(message);
   const std::vector<double> focal_px = numbers_of(lens, "focal_px"), principal_px = numbers_of(lens, "principal_px");

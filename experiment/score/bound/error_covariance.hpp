@@ -7,7 +7,7 @@
 
 namespace tools {
 
-/// Covariance of the errors of a linear or linearised system: the recursion of a Kalman filter without its estimate.
+/// Covariance of the errors of a linear or linearized system: the recursion of a Kalman filter without its estimate.
 /// With Jacobians at the true states it is the posterior Cramer-Rao bound of a system with Gaussian noise (Tichavsky,
 /// Muravchik and Nehorai, IEEE Trans. Signal Processing 46(5), 1998): the inverse of their information matrix, and
 /// unlike that also defined for errors without process noise.

@@ -13,9 +13,9 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::Vector2d;
 
-/// Smallest variance of a fix or a sighting: a millimetre, so that the innovation never is singular.
+/// Smallest variance of a fix or a sighting: a millimeter, so that the innovation never is singular.
 constexpr double min_variance_m2 = 1e-6;
-/// A vehicle that moves faster was placed elsewhere: it has not travelled the distance.
+/// A vehicle that moves faster was placed elsewhere: it has not traveled the distance.
 constexpr double max_speed_mps = 200;
 
 Vector2d left_of(const Vector2d& v) {

@@ -22,7 +22,7 @@ struct SlowError {
 };
 
 /// Errors of one measured quantity, in its unit.  What NoiseParams calls uniform counts as white noise of the same
-/// variance.  Scale errors, outliers, quantisation and saturation have no part in it.
+/// variance.  Scale errors, outliers, quantization and saturation have no part in it.
 struct QuantityErrors {
   double white_std = 0;
   std::vector<SlowError> slow;
@@ -32,7 +32,7 @@ struct QuantityErrors {
 /// deviation.
 QuantityErrors errors_of(const sim::NoiseParams& noise);
 
-/// Errors of the devices by which a vehicle can localise itself, from its vehicle file.  The first device of a kind
+/// Errors of the devices by which a vehicle can localize itself, from its vehicle file.  The first device of a kind
 /// counts.
 struct VehicleErrors {
   /// Way of dead reckoning.

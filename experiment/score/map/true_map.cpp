@@ -49,7 +49,7 @@ class LineCaster {
   }
 
  private:
-  /// Follows the centre line of a row (along x) or a column (along y), in or against the direction of its axis.
+  /// Follows the center line of a row (along x) or a column (along y), in or against the direction of its axis.
   void cast_line(int line, bool along_x, int sense) {
     // Coordinates along and across the line, from the origin of the map.
     const int cells = along_x ? frame_.width : frame_.height;

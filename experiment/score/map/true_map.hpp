@@ -22,11 +22,11 @@ MapFrame frame_of_area(const MapArea& area, double cell_m);
 /// vehicles do not count.  None: there is nothing at this height.
 std::optional<MapArea> area_of_objects(const sim::World& world, double height_m);
 
-/// Returns the true map of a world at its present time, at a height above zero: horizontal rays along the centre lines
-/// of all rows and columns.  A cell is occupied when the outline of an object crosses one of its two centre lines; on
+/// Returns the true map of a world at its present time, at a height above zero: horizontal rays along the center lines
+/// of all rows and columns.  A cell is occupied when the outline of an object crosses one of its two center lines; on
 /// the border of two cells it belongs to the cell inside of the object.  Vehicles are not part of a map, and materials
 /// that transmit lasers are not seen.  The cell size should be smaller than what is to be mapped: a thinner post
-/// between centre lines is missed.
+/// between center lines is missed.
 GridMap true_map(const sim::World& world, const MapFrame& frame, double height_m);
 
 }  // namespace tools

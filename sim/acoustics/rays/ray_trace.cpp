@@ -30,7 +30,7 @@ RayTrace trace_ray(const SoundProfile& profile, double source_m, double launch_r
     const double turn_m = turns ? turn_reach(xi, g, s).r_m : 0;
     const double length_m =
         turns ? 2 * turn_m : arc_reach(xi, std::abs(edge_m - z_m), c, s, edge_mps, ray_sine(xi, edge_mps)).r_m;
-    // Depth along the arc: the sine changes by xi g for each metre of range.
+    // Depth along the arc: the sine changes by xi g for each meter of range.
     for (; next <= steps && next * step_m <= r_m + length_m; ++next) {
       const double dr_m = next * step_m - r_m, slope = (down ? 1 : -1) * g * xi;
       const double sine = std::clamp(s - slope * dr_m, -1.0, 1.0), mean = (s + sine) / 2;

@@ -46,7 +46,7 @@ SoundProfile SoundProfile::fitted(const std::function<double(double)>& speed_mps
   std::vector<Knot> knots{{0, speed_mps(0)}};
   for (std::size_t i = 1; i < rows.size(); ++i)
     refine(speed_mps, knots.back(), {rows[i], speed_mps(rows[i])}, tolerance_mps, knots);
-  // Mean error of each layer (Simpson's rule; it is zero at the ends), of which each knot takes that of its neighbours.
+  // Mean error of each layer (Simpson's rule; it is zero at the ends), of which each knot takes that of its neighbors.
   std::vector<double> mean_mps;
   for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
     const double middle_m = (knots[i].depth_m + knots[i + 1].depth_m) / 2;

@@ -104,7 +104,7 @@ TEST(AcousticFrame, BytesAreWhereTheTableSays) {
   EXPECT_EQ(std::vector<std::uint8_t>(bytes->begin(), bytes->end() - 2), expected);
 }
 
-TEST(AcousticFrame, ComesBackWithinItsQuantisation) {
+TEST(AcousticFrame, ComesBackWithinItsQuantization) {
   sim::Random random(1, "frame");
   for (int i = 0; i < 2000; ++i) {
     random.begin_step(i);
@@ -241,7 +241,7 @@ TEST(AcousticFrame, AReasonThatIsNotKnownComesThroughAndNoneDoesNot) {
   EXPECT_FALSE(frame::decode(bytes, state.utime));
 }
 
-TEST(AcousticFrame, OrderComesBackWithinItsQuantisation) {
+TEST(AcousticFrame, OrderComesBackWithinItsQuantization) {
   sim::Random random(9, "frame");
   for (int i = 0; i < 2000; ++i) {
     random.begin_step(i);

@@ -39,11 +39,11 @@ shoal::modem_received_t over_the_modem(const shoal::position_report_t& report, c
 TEST(PositionReports, CarryAPositionToTheTimeOfASighting) {
   PositionReports reports;
   reports.receive(over_the_modem(report_at(100 * second)));
-  const auto neighbour = reports.take("rover1", 102 * second);
-  ASSERT_TRUE(neighbour);
-  EXPECT_DOUBLE_EQ(neighbour->p_W.x(), 11);
-  EXPECT_DOUBLE_EQ(neighbour->p_W.y(), -3);
-  EXPECT_DOUBLE_EQ(neighbour->std_m, std::hypot(0.4, 0.3 * 2));
+  const auto neighbor = reports.take("rover1", 102 * second);
+  ASSERT_TRUE(neighbor);
+  EXPECT_DOUBLE_EQ(neighbor->p_W.x(), 11);
+  EXPECT_DOUBLE_EQ(neighbor->p_W.y(), -3);
+  EXPECT_DOUBLE_EQ(neighbor->std_m, std::hypot(0.4, 0.3 * 2));
 }
 
 TEST(PositionReports, AreUsedOnce) {

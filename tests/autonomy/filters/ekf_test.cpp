@@ -62,7 +62,7 @@ TEST(Ekf, UncertaintyOfAStraightFollowsTheClosedForm) {
   for (int i = 0; i < steps; ++i) ekf.predict({length_m / steps, 0, 0});
   const double along = params.along_std_m * params.along_std_m;
   const double across = params.across_std_m * params.across_std_m;
-  const double yaw = params.yaw_per_metre_std_rad * params.yaw_per_metre_std_rad;
+  const double yaw = params.yaw_per_meter_std_rad * params.yaw_per_meter_std_rad;
   // The heading is a random walk over the way; its integral has the variance q L^3 / 3.  Summing in steps
   // instead is off by the order of 1 / steps.
   const double rounding = 10.0 / steps;
@@ -132,7 +132,7 @@ TEST(Ekf, FindsBackWhenItWasSureAndWrong) {
   EXPECT_LT((ekf.pose().p_W - Vector2d(4, 3)).norm(), 0.1);
 }
 
-/// One run of a rover whose errors are as the filter believes; normalised error squared at its end.
+/// One run of a rover whose errors are as the filter believes; normalized error squared at its end.
 double nees_of_run(std::uint64_t seed) {
   const Ekf::Params params;
   sim::Random random(seed, "nees");
@@ -142,12 +142,12 @@ double nees_of_run(std::uint64_t seed) {
   const double start_std_rad = 0.05;
   Ekf ekf({{start_std_m * random.gaussian(), start_std_m * random.gaussian()}, start_std_rad * random.gaussian()},
           start_std_m, start_std_rad, params);
-  const Vector2d neighbour_W(15, 5);
+  const Vector2d neighbor_W(15, 5);
   for (int i = 1; i <= 600; ++i) {
     const Increment reported = arc(0.05, i % 200 < 100 ? 0.01 : -0.005);
     const double distance = std::hypot(reported.forward_m, reported.left_m);
     const double yaw_std = std::sqrt(std::pow(params.yaw_per_turn_std_rad, 2) * std::abs(reported.turn_rad) +
-                                     std::pow(params.yaw_per_metre_std_rad, 2) * distance);
+                                     std::pow(params.yaw_per_meter_std_rad, 2) * distance);
     const Vector2d moved_B(reported.forward_m + params.along_std_m * std::sqrt(distance) * random.gaussian(),
                            reported.left_m + params.across_std_m * std::sqrt(distance) * random.gaussian());
     truth.p_W += turned(moved_B, truth.yaw_rad);
@@ -155,8 +155,8 @@ double nees_of_run(std::uint64_t seed) {
     ekf.predict(reported);
     if (i % 20 != 0) continue;
     const Vector2d noise(0.15 * random.gaussian(), 0.15 * random.gaussian());
-    const Vector2d reported_W = neighbour_W + 0.5 * Vector2d(random.gaussian(), random.gaussian());
-    ekf.update_relative(turned(neighbour_W - truth.p_W, -truth.yaw_rad) + noise, 0.15, reported_W, 0.5);
+    const Vector2d reported_W = neighbor_W + 0.5 * Vector2d(random.gaussian(), random.gaussian());
+    ekf.update_relative(turned(neighbor_W - truth.p_W, -truth.yaw_rad) + noise, 0.15, reported_W, 0.5);
   }
   Eigen::Vector3d error;
   error << truth.p_W - ekf.pose().p_W, sim::wrap_angle(truth.yaw_rad - ekf.pose().yaw_rad);

@@ -80,7 +80,7 @@ TEST(MarineEkfContradiction, WhatAllBeaconsSayAlikeIsTheClock) {
     EXPECT_EQ(ekf.update_range(range_of(2, 50 + error_m)), Outcome::accepted);
     EXPECT_NEAR(ekf.range_bias_m(), error_m, 3);
     EXPECT_NEAR((ekf.position() - Vector2d(100, 50)).norm(), 0, 0.1);
-    // It localises itself as before, or better by the two ranges.
+    // It localizes itself as before, or better by the two ranges.
     EXPECT_LT(ekf.position_covariance()(0, 0), 1.01);
     EXPECT_LT(ekf.position_covariance()(1, 1), 1.01);
   }

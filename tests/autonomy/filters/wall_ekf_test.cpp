@@ -25,7 +25,7 @@ TEST(FirstWall, IsTheNearestOneThatTheBeamMeets) {
   EXPECT_NEAR(first_wall(corner, {40, 0}, pi / 4, 1)->range_m, 30 * std::sqrt(2.0), 1e-12);
   EXPECT_NEAR(first_wall(corner, {90, 0}, pi / 4, 1)->range_m, 10 * std::sqrt(2.0), 1e-12);
   EXPECT_FALSE(first_wall(corner, {10, 0}, -pi / 2, 1));
-  // Half a metre from the end of the wall.
+  // Half a meter from the end of the wall.
   EXPECT_FALSE(first_wall(corner, {-99.5, 0}, pi / 2, 1));
 }
 

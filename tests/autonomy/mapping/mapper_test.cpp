@@ -71,7 +71,7 @@ TEST(Mapper, KeepsThePoseThatOdometryLoses) {
   HallRun run(from({-3, -1}));
   run.look();
   for (int round = 0; round < 5; ++round) run.drive_round();
-  // 100 m and five turns: odometry alone is off by 0.6 rad, and by metres.
+  // 100 m and five turns: odometry alone is off by 0.6 rad, and by meters.
   EXPECT_GT(std::abs(run.odometry.yaw_rad - run.truth.yaw_rad), 0.5);
   // Half a cell.
   EXPECT_LT(run.error_m(), 0.025);

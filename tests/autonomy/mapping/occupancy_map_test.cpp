@@ -86,7 +86,7 @@ TEST(OccupancyMap, FieldIsAGaussianOfTheDistanceToTheNearestOccupiedCell) {
   EXPECT_NEAR(map.field({1.05, 0.05}), 1, 0.003);  // eight bits
   const double one_cell = std::exp(-0.5 * std::pow(0.1 / map.params().field_std_m, 2));
   EXPECT_NEAR(map.field({1.15, 0.05}), one_cell, 0.003);
-  EXPECT_NEAR(map.field({1.10, 0.05}), (1 + one_cell) / 2, 0.003);  // between two centres
+  EXPECT_NEAR(map.field({1.10, 0.05}), (1 + one_cell) / 2, 0.003);  // between two centers
   EXPECT_EQ(map.field({1.95, 0.05}), 0);
   EXPECT_EQ(map.field({1e9, 0}), 0);
   // Free again, it has no field.

@@ -36,7 +36,7 @@ void set_pixel(shoal::image_t& image, int column, int row, const Color& color) {
   std::copy(color.begin(), color.end(), image.data.begin() + row * image.row_stride + 3 * column);
 }
 
-/// Paints the pixels whose ray meets a sphere.  Its centre is in the frame of the camera: x ahead, y left, z up.
+/// Paints the pixels whose ray meets a sphere.  Its center is in the frame of the camera: x ahead, y left, z up.
 void paint_ball(shoal::image_t& image, const sim::Vector3d& center_m, double radius_m, const Color& color = orange) {
   for (int row = 0; row < image.height; ++row) {
     for (int column = 0; column < image.width; ++column) {
@@ -84,7 +84,7 @@ TEST(BallDetector, FindsDirectionAndRange) {
     ASSERT_TRUE(ball);
     EXPECT_EQ(ball->utime, 70'000);
     EXPECT_FALSE(ball->cut);
-    // Half a pixel.  The middle of the ellipse differs from the projected centre by less than that.
+    // Half a pixel.  The middle of the ellipse differs from the projected center by less than that.
     EXPECT_NEAR(ball->bearing_rad, std::atan2(center_m.y(), center_m.x()), 0.5 / focal_px);
     EXPECT_NEAR(ball->elevation_rad, std::atan2(center_m.z(), std::hypot(center_m.x(), center_m.y())), 0.5 / focal_px);
     // The number of pixels is off by about the square root of its border, here at most by 5 %, the range by half of it.

@@ -263,7 +263,7 @@ void expect_camera_info(const std::string& optics, const std::string& model, con
   EXPECT_EQ(in->text(), model);
   ASSERT_EQ(in->number<std::uint32_t>(), d.size());
   for (const double value : d) EXPECT_EQ(in->number<double>(), value);
-  // The principal point of OpenCV and ROS counts from the centre of the first pixel.
+  // The principal point of OpenCV and ROS counts from the center of the first pixel.
   for (const double value : {300.0, 0.0, 0.5, 0.0, 310.0, 0.0, 0.0, 0.0, 1.0}) EXPECT_EQ(in->number<double>(), value);
   for (const double value : {1, 0, 0, 0, 1, 0, 0, 0, 1}) EXPECT_EQ(in->number<double>(), value);
   for (const double value : {300.0, 0.0, 0.5, 0.0, 0.0, 310.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0})

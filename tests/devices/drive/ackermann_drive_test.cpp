@@ -81,7 +81,7 @@ TEST(AckermannDrive, DrivesTheCircleOfItsWheelbaseAndSteering) {
     }
 }
 
-TEST(AckermannDrive, WheelsPointToOneCentreOfTurn) {
+TEST(AckermannDrive, WheelsPointToOneCenterOfTurn) {
   test::TestWorld test(car_world(rear));
   steer(test, 0, 0.4);
   test.run_for(1);

@@ -164,7 +164,7 @@ TEST_P(CylinderWheels, TurnOnABoxAndOnTerrainToo) {
   }
 }
 
-/// They rest up to half a millimetre deep, and roll on their radius all the same.
+/// They rest up to half a millimeter deep, and roll on their radius all the same.
 TEST_P(CylinderWheels, SpheresRollAsFarOnABoxAsOnAPlane) {
   WheeledRobot robot = two_wheels("shape: sphere");
   robot.radius_m = 0.01;

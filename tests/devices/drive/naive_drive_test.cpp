@@ -137,7 +137,7 @@ TEST_F(NaiveDrive, LevelsOutBelowTheSurfaceWithItsElevatorUp) {
     test->run_for(1);
     ASSERT_LE(pose().translation().z(), 0) << i << " s";
   }
-  // The last metres go as exp(-0.2 t), of which 60 s leave less than a millimetre.
+  // The last meters go as exp(-0.2 t), of which 60 s leave less than a millimeter.
   EXPECT_NEAR(pose().translation().z(), 0, 1e-3);
   EXPECT_NEAR(std::asin(pose().linear()(2, 0)), 0, 1e-3);
   EXPECT_NEAR(velocity().x(), 2, 1e-3);

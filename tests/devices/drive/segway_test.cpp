@@ -116,7 +116,7 @@ TEST(Segway, FallsAtTheRateOfTheClosedForm) {
 /// How far a wheel is from where its axle should hold it.
 struct Wobble {
   double axis_deg = 0;   ///< largest angle between the wheel's axle and the body's
-  double centre_mm = 0;  ///< largest way of its middle on the body
+  double center_mm = 0;  ///< largest way of its middle on the body
   double tilt_deg = 0;   ///< largest tilt from the balanced one: it was kept up
 };
 
@@ -150,8 +150,8 @@ Wobble wobble_of(const std::string& overrides, const std::string& solver = "auto
       const sim::Body& wheel = test.vehicle().body(std::string(name) + "_wheel");
       const sim::Pose X_BR = X_BW * wheel.X_WB();
       worst.axis_deg = std::max(worst.axis_deg, std::acos(std::clamp(X_BR.linear()(1, 1), -1.0, 1.0)) * degrees);
-      worst.centre_mm =
-          std::max(worst.centre_mm, 1e3 * (X_BR.translation() - Vector3d(0, y, -platform_over_axle_m)).norm());
+      worst.center_mm =
+          std::max(worst.center_mm, 1e3 * (X_BR.translation() - Vector3d(0, y, -platform_over_axle_m)).norm());
     }
     worst.tilt_deg = std::max(worst.tilt_deg, std::abs(test.tilt_rad() - balanced_rad()) * degrees);
   }
@@ -174,7 +174,7 @@ const std::string free_steering = both("low_stop", "-3.1") + both("high_stop", "
 TEST(Segway, ItsWheelsStayOnTheirAxles) {
   const Wobble wobble = wobble_of("");
   EXPECT_LT(wobble.axis_deg, 1e-3);  // the softness of the constraints, cfm 1e-9, and their errors of second order
-  EXPECT_LT(wobble.centre_mm, 0.02);
+  EXPECT_LT(wobble.center_mm, 0.02);
   EXPECT_LT(wobble.tilt_deg, 15);
 }
 
@@ -190,7 +190,7 @@ TEST(Segway, WithoutSlackOrWithoutALeverArmItsWheelsStayWithinTheSlack) {
   EXPECT_LT(wobble_of(anchors_of_the_paper).axis_deg, 1e-3) << "no slack";
   const Wobble no_lever_arm = wobble_of(slack);
   RecordProperty("axis_deg", std::to_string(no_lever_arm.axis_deg));
-  RecordProperty("centre_mm", std::to_string(no_lever_arm.centre_mm));
+  RecordProperty("center_mm", std::to_string(no_lever_arm.center_mm));
   EXPECT_LT(no_lever_arm.axis_deg, 0.7) << "nothing holds a wheel that stands on its middle, within 0.57 degrees";
   EXPECT_LT(no_lever_arm.tilt_deg, 15);
 }
@@ -198,7 +198,7 @@ TEST(Segway, WithoutSlackOrWithoutALeverArmItsWheelsStayWithinTheSlack) {
 TEST(Segway, ASoftSuspensionSinksAndDoesNotWobble) {
   const Wobble soft = wobble_of(anchors_of_the_paper + both("suspension_erp", "0.2") + both("suspension_cfm", "0.002"));
   EXPECT_LT(soft.axis_deg, 1e-2);
-  EXPECT_GT(soft.centre_mm, 20);
+  EXPECT_GT(soft.center_mm, 20);
 }
 
 TEST(Segway, TheBallJointsOfThePaperHoldTheWheelsAsWell) {

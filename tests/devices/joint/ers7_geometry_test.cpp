@@ -15,7 +15,7 @@ namespace {
 using sim::Pose;
 using sim::Vector3d;
 
-/// Centre of the ball of a foot, with the knee at an angle and the hip at zero.
+/// Center of the ball of a foot, with the knee at an angle and the hip at zero.
 Vector3d ball_at(const sim::VehicleConfig& config, const std::string& leg, double knee_deg) {
   const sim::JointConfig& knee = joint_of(config, leg + "_knee");
   const Vector3d straight =

@@ -162,7 +162,7 @@ TEST(BoundMetric, GoesBackToWhatWasSaved) {
 TEST(BoundMetric, RefusesWhatItCannotBound) {
   const auto error = [](const std::string& metrics) { return test::error_of_world(bounded_world(metrics)); };
   EXPECT_THAT(error("  - {name: b, type: bound, vehicle: rock}\n"),
-              HasSubstr("metric 'b': vehicle 'rock' cannot localise itself: it needs gps, odometry, or dvl with ahrs "
+              HasSubstr("metric 'b': vehicle 'rock' cannot localize itself: it needs gps, odometry, or dvl with ahrs "
                         "or compass"));
   EXPECT_THAT(error("  - {name: b, type: bound, vehicle: auv, team: [auv, rock]}\n"), HasSubstr("vehicle 'rock'"));
   EXPECT_THAT(error("  - {name: b, type: bound, vehicle: auv, known: [clok]}\n"),

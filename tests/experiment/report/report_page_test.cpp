@@ -134,8 +134,8 @@ TEST(Report, OfARunIsOnePageWithVerdictsFirst) {
   EXPECT_THAT(page, HasSubstr("<span class=\"bad\">FAILED</span> distance.travelled_m"));
   EXPECT_THAT(page, HasSubstr("<span class=\"good\">passed</span> distance.travelled_m"));
   EXPECT_THAT(page, HasSubstr("1 of 2 rules holds, 1 failed."));
-  EXPECT_LT(page.find("FAILED"), page.find("r1 travelled"));
-  EXPECT_LT(page.find("r1 travelled"), page.find("<img"));
+  EXPECT_LT(page.find("FAILED"), page.find("r1 traveled"));
+  EXPECT_LT(page.find("r1 traveled"), page.find("<img"));
   EXPECT_LT(page.find("<img"), page.find("<h2>Figures"));
   EXPECT_THAT(page, HasSubstr("src=\"data:image/png;base64,iVBORw0KGgo"));
   EXPECT_EQ(problems_of_page(tools::report_page({directory + "/"})), "");
@@ -270,7 +270,7 @@ TEST(Report, SaysInWordsWhatCameOut) {
   const ScratchFolder folder;
   const std::string page = tools::report_page({folder_of(folder, sea_figures(), sea_metrics)});
   EXPECT_EQ(problems_of_page(page), "");
-  EXPECT_THAT(page, HasSubstr("auv localises itself to 0.91 m rms (cooperative); alone: 61.2 m rms, 138 m at the end, "
+  EXPECT_THAT(page, HasSubstr("auv localizes itself to 0.91 m rms (cooperative); alone: 61.2 m rms, 138 m at the end, "
                               "after 2.80 km."));
   EXPECT_THAT(page, HasSubstr("link: 130 packets sent by auv; 75 % of 100 addressed to auv arrived."));
   // Without the world no one knows whose they are; a world that is not YAML is not known.

@@ -251,7 +251,7 @@ TEST(PositionError, SaysAtTheEndHowManyWereIgnored) {
   EXPECT_NE(log.text().find("metric 'e': 30 messages in a row were ignored"), std::string::npos) << log.text();
 }
 
-TEST(PositionError, PerDistanceIsOfTheWayThatWasTravelled) {
+TEST(PositionError, PerDistanceIsOfTheWayThatWasTraveled) {
   MetricWorld world("  - {name: e, type: position_error, vehicle: r1, channel: est}\n");
   world.drive(0.5);
   world.run_for(3);
@@ -592,7 +592,7 @@ TEST(Tilt, ReportsMeanSpreadAndFallOfASteadyTurn) {
     EXPECT_TRUE(std::isnan(figures.at(std::string("late.") + figure))) << figure;
 }
 
-TEST(BytesPerMetre, NeedsAnErrorThatBecameSmaller) {
+TEST(BytesPerMeter, NeedsAnErrorThatBecameSmaller) {
   const std::string metrics =
       "  - {name: with, type: position_error, vehicle: r1, channel: est}\n"
       "  - {name: without, type: position_error, vehicle: r1, channel: est2}\n"

@@ -64,7 +64,7 @@ TEST(Support, OfATableAtRestIsTheRectangleOfItsFeet) {
     EXPECT_EQ(support->polygon_W.size(), 4u);
     // 0.1 mm: the feet sink in by their softness, and the table tilts by it.
     EXPECT_NEAR(support->static_margin_m, std::min(0.2, 0.3 - offset_m), 1e-4);
-    // At rest, zero-moment point and capture point are below the centre of mass.
+    // At rest, zero-moment point and capture point are below the center of mass.
     EXPECT_NEAR(support->zmp_margin_m, support->static_margin_m, 1e-4);
     EXPECT_NEAR(support->capture_margin_m, support->static_margin_m, 1e-4);
     // Over the nearest edge, at a distance r from it and a height h, it rises by sqrt(r^2 + h^2) - h.

@@ -83,8 +83,8 @@ TEST(AlgorithmTable, HasTheRootMeanSquareTheEfficiencyAndTheNeesOverTheSeeds) {
   EXPECT_LT(ci.rms_95.low, ci.rms_m);
   EXPECT_LE(ci.rms_95.high, 4);
   EXPECT_GT(ci.rms_95.high, ci.rms_m);
-  EXPECT_EQ(ci.trust, tools::Trust::too_sure);             // 9 -/+ 2.78 x 0.707 / sqrt(5) lies above 2
-  EXPECT_EQ(table.cells()[1].trust, tools::Trust::right);  // 2 -/+ 2.78 x 0.354 / sqrt(5) holds 2
+  EXPECT_EQ(ci.trust, tools::Trust::overconfident);             // 9 -/+ 2.78 x 0.707 / sqrt(5) lies above 2
+  EXPECT_EQ(table.cells()[1].trust, tools::Trust::consistent);  // 2 -/+ 2.78 x 0.354 / sqrt(5) holds 2
 }
 
 TEST(AlgorithmTable, CallsACovarianceUnclearWhenAFewRunsDecide) {
@@ -113,7 +113,7 @@ TEST(AlgorithmTable, ComparesInPairsOfEqualSeedsByTheirRatio) {
   ASSERT_EQ(table.sentences().size(), 1u);
   EXPECT_THAT(table.sentences()[0],
               HasSubstr("small: iu has the smallest rms, 1.57 m, then ci with 3.13 m; ratio in pairs 2 [2, 2]"));
-  EXPECT_THAT(table.sentences()[0], HasSubstr("iu is too sure of itself (NEES 8.5), the best that is not is ci"));
+  EXPECT_THAT(table.sentences()[0], HasSubstr("iu is overconfident (NEES 8.5), the best that is not is ci"));
   EXPECT_EQ(tools::AlgorithmTable(results).text(), table.text());  // the bootstrap has a fixed seed
 }
 
@@ -126,7 +126,7 @@ TEST(AlgorithmTable, IsOnThePageOfTheStudy) {
   folder.write("study.json", results.to_json(0));
   const std::string page = tools::study_report(folder.folder.file(""));
   EXPECT_THAT(page, HasSubstr("<h2>Algorithms</h2>"));
-  EXPECT_THAT(page, HasSubstr("m<br><span style=\"color:#d03030\" title=\"too sure\">NEES 9 ["));
+  EXPECT_THAT(page, HasSubstr("m<br><span style=\"color:#d03030\" title=\"overconfident\">NEES 9 ["));
   EXPECT_THAT(page, HasSubstr("Ratios of the rms in pairs of equal seeds"));
   EXPECT_THAT(page, HasSubstr("<svg"));
 }

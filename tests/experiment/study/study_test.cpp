@@ -81,7 +81,7 @@ TEST(Statistics, AreThoseOfTheSample) {
   EXPECT_TRUE(std::isnan(tools::statistics_of({}).mean));
 }
 
-TEST(Statistics, QuantilesLieBetweenNeighbours) {
+TEST(Statistics, QuantilesLieBetweenNeighbors) {
   const std::vector<double> sorted{0, 10, 20, 30, 40};
   EXPECT_DOUBLE_EQ(tools::quantile(sorted, 0), 0);
   EXPECT_DOUBLE_EQ(tools::quantile(sorted, 0.05), 2);

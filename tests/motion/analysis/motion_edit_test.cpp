@@ -127,7 +127,7 @@ TEST(MotionEdit, TimesMove) {
   EXPECT_NEAR(value(tools::stretched(two_joints(), 2), "a", 2), 1, 1e-9);
   EXPECT_NEAR(value(tools::retimed(two_joints(), 1, 2), "a", 2), 1, 1e-9);
   EXPECT_THAT(error_of([&] { tools::retimed(two_joints(), 1, 3.5); }),
-              HasSubstr("between its neighbours, at 0 s and 3 s"));
+              HasSubstr("between its neighbors, at 0 s and 3 s"));
   EXPECT_THAT(error_of([&] { tools::retimed(two_joints(), 1.1, 2); }), HasSubstr("no key is at 1.1 s"));
 }
 

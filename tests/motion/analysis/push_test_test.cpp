@@ -12,7 +12,7 @@
 
 namespace {
 
-/// A block of 2 kg and 0.04 kg of feet that stands on four small feet at (+-0.15, +-0.1) m, its centre of mass 0.3 m
+/// A block of 2 kg and 0.04 kg of feet that stands on four small feet at (+-0.15, +-0.1) m, its center of mass 0.3 m
 /// above ground, with an arm without weight that a player moves.
 struct Block {
   test_support::ScratchFolder folder;
@@ -60,7 +60,7 @@ sim::JointMotion turn() {
 }
 
 /// Impulse per mass at which the block tips over an edge at this distance.  An impulse J at the height of the ball, h,
-/// turns the block about the edge at J h / I; this energy must lift its centre of mass, at the height c, over the edge.
+/// turns the block about the edge at J h / I; this energy must lift its center of mass, at the height c, over the edge.
 double tipping_mps(double r) {
   const double h = 0.3, mass_kg = 2.041;
   const double c = (2 * h + 0.04 * 0.01 + 0.001 * 0.4) / mass_kg;

@@ -14,14 +14,14 @@ using testing::HasSubstr;
 
 constexpr double degree = std::numbers::pi / 180;
 
-TEST(OpencatFormat, WritesABehaviourWithSpeedsAndDelays) {
+TEST(OpencatFormat, WritesABehaviorWithSpeedsAndDelays) {
   const sim::JointMotion motion = test::motion({{0, {{"lf_swing", 0}, {"lf_knee", 30.4 * degree}}},
                                                 {0.4, {{"lf_swing", 40 * degree}}, sim::Easing::cosine},
                                                 {0.9, {{"lf_swing", 40 * degree}}}});
   const test::Written file = test::written("opencat", motion, test::leg_names());
   // 40 degrees in 0.4 s, which is 20 steps of 20 ms: 2 degrees a step.  0.5 s are 10 delays.
   EXPECT_EQ(file.bytes,
-            "// behaviour of OpenCat, 2 rows\nconst int8_t wave[] PROGMEM = {\n  -2, 0, 0, 1,\n  0, 0, 0,\n"
+            "// behavior of OpenCat, 2 rows\nconst int8_t wave[] PROGMEM = {\n  -2, 0, 0, 1,\n  0, 0, 0,\n"
             "  0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 30, 0, 0, 0, 8, 0, 0, 0,\n"
             "  0, 0, 0, 0, 0, 0, 0, 0, 40, 0, 0, 0, 30, 0, 0, 0, 8, 10, 0, 0,\n};\n");
   EXPECT_THAT(file.losses, ElementsAre(HasSubstr("joints that the motion does not name are at 0: 0, 1"),
@@ -56,7 +56,7 @@ TEST(OpencatFormat, HalvesAnglesAbove127Degrees) {
   EXPECT_NEAR(test::value(test::read("opencat", file.bytes).motion, "joint_9", 0), -200 * degree, 1e-12);
 }
 
-TEST(OpencatFormat, RepeatsTheLoopOfABehaviour) {
+TEST(OpencatFormat, RepeatsTheLoopOfABehavior) {
   tools::SkillArray skill;
   skill.name = "hi";
   skill.period = -3;
@@ -70,7 +70,7 @@ TEST(OpencatFormat, RepeatsTheLoopOfABehaviour) {
   // Rows 0 1 2 1 2 at 1 degree a step of 20 ms: four ways of 10 degrees.
   EXPECT_DOUBLE_EQ(file.motion.end_s(), 0.8);
   EXPECT_NEAR(test::value(file.motion, "joint_8", 0.6), 10 * degree, 1e-12);
-  EXPECT_THAT(file.losses, Contains("the loop of the behaviour is written 2 times"));
+  EXPECT_THAT(file.losses, Contains("the loop of the behavior is written 2 times"));
 }
 
 TEST(OpencatFormat, ChoosesOneOfTheSkillsOfAFile) {

@@ -63,7 +63,7 @@ TEST_P(Reimport, AsAMotionFileEndsInTheSameState) {
 
 /// Webots' format has six decimals of a radian.  Where the robot tips from foot to foot a microradian becomes more:
 /// 1.7 mm in `wave`, 5.6 mm in `steps`.
-TEST(ReimportOfStableMotions, AsAWebotsMotionEndsWithinAMillimetreAfterHalfAMinute) {
+TEST(ReimportOfStableMotions, AsAWebotsMotionEndsWithinAMillimeterAfterHalfAMinute) {
   for (const std::string name : {"push_ups", "stretch"}) {
     const sim::JointMotion motion = shipped_motion(name);
     EXPECT_LE((end_of(read_again("webots", motion), 30).torso_W - end_of(motion, 30).torso_W).norm(), 0.001) << name;

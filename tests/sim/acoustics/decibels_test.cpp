@@ -61,7 +61,7 @@ TEST(Decibels, NoPowerIsMinusInfinityAndBack) {
   EXPECT_EQ(to_power(to_decibels(PowerRatio(0))).linear(), 0);
 }
 
-TEST(Decibels, AWattHas171DecibelsAtAMetre) {
+TEST(Decibels, AWattHas171DecibelsAtAMeter) {
   // W = p^2 4 pi r^2 / (rho c).
   const double p_Pa = std::sqrt(1.54e6 / (4 * 3.14159265358979));
   EXPECT_NEAR(sim::one_watt_level.dB(), sim::pressure_level(p_Pa / sim::reference_pressure_Pa).dB(), 0.05);

@@ -20,7 +20,7 @@ Medium water_of(double c_mps) {
   return make_medium("water: {sound_speed_mps: " + std::to_string(c_mps) + "}");
 }
 
-/// 1500 m/s at the surface, `gradient` more with every metre of depth, down to 2 km.
+/// 1500 m/s at the surface, `gradient` more with every meter of depth, down to 2 km.
 Medium linear_water(double gradient) {
   return make_medium("water: {profile: [{depth_m: 0, sound_speed_mps: 1500}, {depth_m: 2000, sound_speed_mps: " +
                      std::to_string(1500 + 2000 * gradient) + "}]}");

@@ -76,7 +76,7 @@ TEST(Renderer, TheDiscOfASphereHasTheRadiusOfItsTangentCone) {
   const Frame frame = render(*world, Pose::Identity(), of_kind(ImageKind::groups));
   const double radius_px = 200 * std::tan(std::asin(1 / 5.0));  // 40.8 px
   const double area = std::numbers::pi * radius_px * radius_px;
-  // Gauss's circle problem: the error of a count of pixel centres stays far below the circumference.
+  // Gauss's circle problem: the error of a count of pixel centers stays far below the circumference.
   EXPECT_NEAR(count(frame.labels, 1), area, 0.25 * 2 * std::numbers::pi * radius_px);
   int across = 0;
   for (int u = 0; u < 200; ++u) across += *frame.labels.at(u, 75) != 0;
@@ -132,7 +132,7 @@ TEST(Renderer, AShadowEndsWhereTheSunsHeightSays) {
   // 1 m high, its east side at x = 0: under a sun in the west at 45 degrees the shadow ends at x = 1.
   add(*world, body("wall", {box({0.2, 4, 1}, 0)}), translation(-0.1, 0, 0.5), Motion::fixed);
   const Frame frame = render(*world, looking_down(0.5, 0, 4), sun_in_the_west(45));
-  // 200 px / 4 m: 50 px a metre on the floor; the column of x is 100 + 50 (x - 0.5).
+  // 200 px / 4 m: 50 px a meter on the floor; the column of x is 100 + 50 (x - 0.5).
   EXPECT_EQ(frame.light.at(100, 75)[0], 0);
   EXPECT_EQ(frame.light.at(123, 75)[0], 0);     // x = 0.97
   EXPECT_GT(frame.light.at(126, 75)[0], 0.5F);  // x = 1.03
@@ -236,7 +236,7 @@ TEST(Renderer, AnImageLiesUprightOnAWall) {
     return std::string(rgb[0] > 0.3F ? "r" : "") + (rgb[1] > 0.3F ? "g" : "") + (rgb[2] > 0.3F ? "b" : "");
   };
   EXPECT_EQ(at(0.5, 0.5), "b");     // blue, the lower left pixel
-  EXPECT_EQ(at(-0.5, 0.5), "rgb");  // its right neighbour, repeated
+  EXPECT_EQ(at(-0.5, 0.5), "rgb");  // its right neighbor, repeated
   EXPECT_EQ(at(0.5, -0.5), "r");    // from below: the top row again
   EXPECT_EQ(at(-0.5, -0.5), "g");
 }

@@ -353,7 +353,7 @@ TEST(ParamReader, ReportsUnknownKeysAtTheKey) {
   };
   EXPECT_EQ(errors_of("beams: 5\nbeam: 3\n", read),
             Lines{"2:1 unknown key 'beam'; known keys: beams, fov_deg; did you mean 'beams'?"});
-  EXPECT_EQ(errors_of("colour: 3\n", read), Lines{"1:1 unknown key 'colour'; known keys: beams, fov_deg"});
+  EXPECT_EQ(errors_of("color: 3\n", read), Lines{"1:1 unknown key 'color'; known keys: beams, fov_deg"});
   EXPECT_EQ(errors_of("{a: 1, b: 2}\n", [](ParamReader&) {}),
             (Lines{"1:2 unknown key 'a'; known keys: none", "1:8 unknown key 'b'; known keys: none"}));
 }

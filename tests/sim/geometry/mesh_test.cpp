@@ -17,7 +17,7 @@ using namespace small_worlds;
 using sim::Mesh;
 using sim::MeshError;
 
-/// A box with its centre at `c`.
+/// A box with its center at `c`.
 Mesh box_mesh(const Vector3d& size, const Vector3d& c) {
   Mesh mesh;
   for (int i = 0; i < 8; ++i)
@@ -268,7 +268,7 @@ TEST(Mesh, TrianglesWithoutAreaStayOutOrDoNoHarm) {
 }
 
 TEST(MeshPart, HasTheMassOfTheSameBoxAndRestsLikeIt) {
-  // Inside out: the loader turns it round.  Scale 0.1: written in decimetres.
+  // Inside out: the loader turns it round.  Scale 0.1: written in decimeters.
   Mesh box = box_mesh({10, 20, 4}, {1, 0, 0});
   sim::turn_inside_out(box);
   const TemporaryFile file("box.stl", binary_stl_of(box));

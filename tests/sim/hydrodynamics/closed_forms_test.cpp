@@ -64,7 +64,7 @@ TEST(ClosedForms, AForceAgainstQuadraticDragGivesTheHyperbolicTangent) {
   test::expect_closed_form(craft.x(), "thrust_accel_quadratic", "", "distance");
 }
 
-TEST(ClosedForms, ASubmergedHullRollsAboutItsCentreOfBuoyancy) {
+TEST(ClosedForms, ASubmergedHullRollsAboutItsCenterOfBuoyancy) {
   Craft craft(
       "{frame: frd, mass_kg: 30.48, weight_N: 299, center_of_mass_m: [0, 0, 0.0196], "
       "inertia_kgm2: [0.177, 3.45, 3.45], inertia_about: origin, "

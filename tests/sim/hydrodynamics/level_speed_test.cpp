@@ -11,7 +11,7 @@ namespace {
 
 using sim::LevelMotion;
 
-/// 10 kg in 10 m/s2, with 100 N of buoyancy 2 cm above its centre: 2 N m per rad right it.
+/// 10 kg in 10 m/s2, with 100 N of buoyancy 2 cm above its center: 2 N m per rad right it.
 sim::CoefficientModel level_model(const std::string& more) {
   return {test::config_of("{frame: frd, mass_kg: 10, inertia_kgm2: [1, 1, 1], center_of_buoyancy_m: [0, 0, -0.02], "
                           "linear_damping: [5, 6, 7, 0, 0, 0], quadratic_damping: [30, 40, 50, 0, 0, 0]" +

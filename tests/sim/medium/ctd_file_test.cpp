@@ -156,7 +156,7 @@ TEST(CtdFile, TakesTablesOfStandardDepths) {
   EXPECT_EQ(rows_of(ctd_header + "0,20,35\n200,12,35\n500,8,35\n1000,5,35\n500,8,35\n200,12,35\n0,20,35\n").size(), 4u);
 }
 
-/// A cast of 60 m whose temperature is 20 C less 0.1 C for each metre.
+/// A cast of 60 m whose temperature is 20 C less 0.1 C for each meter.
 std::string cast_of(const std::vector<double>& depths_m) {
   std::string text = ctd_header;
   for (const double depth_m : depths_m)

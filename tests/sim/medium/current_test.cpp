@@ -167,7 +167,7 @@ TEST(Current, GridComesFromAPairOfEsriGrids) {
           "{water: {}, current: [{type: grid, east_file: u.asc, north_file: v.asc, map_origin_m: [1000, 2000]}]}",
           folder.file("world.yaml")),
       9.81, 1);
-  // The first row of the file is the north; the hole takes its neighbour's 0.
+  // The first row of the file is the north; the hole takes its neighbor's 0.
   EXPECT_TRUE(medium.water_velocity_W({5, 0, -1}).isApprox(Vector3d(2.5, 0, 0), 1e-12));
   EXPECT_TRUE(medium.water_velocity_W({5, 10, -1}).isApprox(Vector3d(0.5, 0, 0), 1e-12));
 }
@@ -226,7 +226,7 @@ TEST(Current, ABadFileIsSaidOfItsEntry) {
   EXPECT_THAT(error("none.csv"), HasSubstr("medium: current 2: file '" + folder.file("none.csv") + "' does not exist"));
 }
 
-TEST(Current, WhereABodyLeftItsFileIsSaidToTheDecimetre) {
+TEST(Current, WhereABodyLeftItsFileIsSaidToTheDecimeter) {
   const test_support::ScratchFolder folder;
   write(folder.file("flow.csv"), "x_m,y_m,east_mps,north_mps\n0,0,1,0\n10,0,1,0\n0,10,1,0\n10,10,1,0\n");
   const sim::LoadedWorld loaded = sim::load_world_text(R"(

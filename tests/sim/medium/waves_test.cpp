@@ -240,7 +240,7 @@ TEST(IrregularWaves, SpreadAboutTheirDirection) {
 }
 
 TEST(IrregularWaves, AreTheSumOfTheirComponents) {
-  // The vectorised polynomials against the C library, for places and times far off.  1e-7 m: 200 angles of 1e6 rad are
+  // The vectorized polynomials against the C library, for places and times far off.  1e-7 m: 200 angles of 1e6 rad are
   // known to 1e-10 each.
   for (const std::string depth : {"", ", water_depth_m: 15"}) {
     const auto config = test_support::read_medium(

@@ -78,7 +78,7 @@ TEST(HydrodynamicsChecks, AWaterlineHoldsAgainstHeaveAndPitchAtOnce) {
 TEST(HydrodynamicsChecks, InertiaIsPositiveDefinite) {
   EXPECT_THAT(error_of(", inertia_kgm2: [1, 1, -1]"),
               HasSubstr("must be positive definite, its smallest eigenvalue is -1"));
-  // 10 kg half a metre off already have 2.5 kg m^2 about the origin.
+  // 10 kg half a meter off already have 2.5 kg m^2 about the origin.
   EXPECT_THAT(error_of(inertia + ", inertia_about: origin, center_of_mass_m: [0, 0, 0.5]"),
               HasSubstr("its smallest eigenvalue is -1.5; see 'inertia_about'"));
   EXPECT_THAT(error_of(", inertia_kgm2: [1, 0.1, 0, 0, 1, 0, 0, 0, 1]"), HasSubstr("'inertia_kgm2' must be symmetric"));
@@ -120,7 +120,7 @@ TEST(HydrodynamicsChecks, AHullThatTurnsOverIsDoubted) {
   const std::string rest = ", mass_kg: 10, inertia_kgm2: [1, 1, 1], center_of_mass_m: [0, 0, 0.02]}";
   EXPECT_THAT(sim::doubts_about(test::config_of("{frame: frd" + rest)), testing::IsEmpty());
   EXPECT_THAT(sim::doubts_about(test::config_of("{frame: flu" + rest)),
-              testing::ElementsAre(HasSubstr("its centre of mass lies 0.02 m above its centre of buoyancy")));
+              testing::ElementsAre(HasSubstr("its center of mass lies 0.02 m above its center of buoyancy")));
 }
 
 TEST(HydrodynamicsChecks, AnInertiaThatNoSolidHasIsDoubted) {

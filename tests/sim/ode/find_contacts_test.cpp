@@ -39,7 +39,7 @@ double sum_of_depths(int count) {
 }
 
 TEST(FindContacts, FindsTheDepthOfASphereInATriangle) {
-  // Its centre is 0.45 m above the plane, and its radius 0.5 m.
+  // Its center is 0.45 m above the plane, and its radius 0.5 m.
   EXPECT_NEAR(sum_of_depths(100), 100 * 0.05, 1e-9);
 }
 

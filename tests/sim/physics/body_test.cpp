@@ -38,7 +38,7 @@ TEST(Body, FliesLikeAProjectile) {
   EXPECT_NEAR(ball.X_WB().translation().z(), 2.195353579, g * 0.001 * 1.2);  // 12 sin(40 deg) t - g t^2 / 2
 }
 
-TEST(Body, ForceThroughTheCentreOfMassDoesNotTurnIt) {
+TEST(Body, ForceThroughTheCenterOfMassDoesNotTurnIt) {
   const auto world = make_world(with_step(0.01, 0));
   sim::Body& hull = add(*world, body("hull", {at(box({1, 1, 1}, 4), {0.5, 0, 0})}), translation(1, 2, 3));
   EXPECT_EQ(hull.p_BC(), Vector3d(0.5, 0, 0));
@@ -48,7 +48,7 @@ TEST(Body, ForceThroughTheCentreOfMassDoesNotTurnIt) {
   EXPECT_EQ(hull.w_WB_W(), Vector3d(0, 0, 0));
 }
 
-TEST(Body, ForceBesideTheCentreOfMassTurnsIt) {
+TEST(Body, ForceBesideTheCenterOfMassTurnsIt) {
   const auto world = make_world(with_step(0.01, 0));
   sim::Body& cube = add(*world, body("cube", {box({1, 1, 1}, 6)}), Pose::Identity());
   cube.add_force_W({0, 1, 0}, {0.5, 0, 0});
@@ -56,7 +56,7 @@ TEST(Body, ForceBesideTheCentreOfMassTurnsIt) {
   EXPECT_NEAR(cube.w_WB_W().z(), 0.5 * 1 / (6.0 / 6) * 0.01, 1e-15);  // I = m a^2 / 6
 }
 
-TEST(Body, PublishesOfItsOwnFrameNotOfTheCentreOfMass) {
+TEST(Body, PublishesOfItsOwnFrameNotOfTheCenterOfMass) {
   const auto world = make_world(with_step(0.01, 0));
   sim::Body& hull = add(*world, body("hull", {at(box({1, 1, 1}, 4), {0.5, 0, 0.25})}), Pose::Identity());
   const Pose X_WB = sim::make_pose({1, 2, 3}, {0.1, 0.2, 0.3});
@@ -82,7 +82,7 @@ TEST(Body, FixedBodyKeepsItsPlace) {
 struct ShapeCase {
   PartConfig part;
   double volume_m3;
-  Vector3d inertia_per_kg;  // about the centre, principal axes
+  Vector3d inertia_per_kg;  // about the center, principal axes
 };
 
 class ShapeMass : public testing::TestWithParam<ShapeCase> {};
@@ -102,7 +102,7 @@ TEST_P(ShapeMass, IsTheClosedForm) {
   EXPECT_TRUE(by_mass.inertia_C_B().isApprox(expected, 1e-12)) << by_mass.inertia_C_B();
 }
 
-/// Cylinder plus two half spheres, whose centres of mass lie 3/8 r from their flat sides.
+/// Cylinder plus two half spheres, whose centers of mass lie 3/8 r from their flat sides.
 ShapeCase capsule_case(double r, double l) {
   const double v_cylinder = pi * r * r * l, v_caps = 4 * pi * r * r * r / 3, v = v_cylinder + v_caps;
   const double along = (v_cylinder * r * r / 2 + v_caps * 2 * r * r / 5) / v;
@@ -119,9 +119,9 @@ INSTANTIATE_TEST_SUITE_P(Shapes, ShapeMass,
                                                    {0.25 / 4 + 4.0 / 12, 0.25 / 4 + 4.0 / 12, 0.125}},
                                          capsule_case(0.5, 2)));
 
-TEST(CompositeBody, AddsMassesCentresAndInertias) {
+TEST(CompositeBody, AddsMassesCentersAndInertias) {
   const auto world = make_world();
-  // Two cubes of side 1 and masses 1 and 3, 4 m apart along x: centre at 3/4 of the way.
+  // Two cubes of side 1 and masses 1 and 3, 4 m apart along x: center at 3/4 of the way.
   const sim::Body& dumb_bell =
       add(*world, body("dumb_bell", {box({1, 1, 1}, 1), at(box({1, 1, 1}, 3), {4, 0, 0})}), Pose::Identity());
   EXPECT_NEAR(dumb_bell.mass_kg(), 4, 1e-14);

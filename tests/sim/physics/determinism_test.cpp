@@ -142,7 +142,7 @@ TEST(QuickFallback, HoldsStacksOnWhichTheExactSolverGivesUp) {
     int level = 0;
     for (const auto& each : world->bodies()) {
       if (each->fixed()) continue;
-      // QuickStep presses each contact by about a millimetre, of which the uppermost box has eight below it.
+      // QuickStep presses each contact by about a millimeter, of which the uppermost box has eight below it.
       EXPECT_NEAR(each->X_WB().translation().z(), 0.2 * (level + 0.5), 0.01) << "stack " << stack << ", box " << level;
       ++level;
     }

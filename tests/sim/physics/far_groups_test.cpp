@@ -124,7 +124,7 @@ TEST(FarGroups, AreSeenByRaysWhereTheyAre) {
     PhysicsConfig config = far_from_planets();
     config.rays = library;
     const std::unique_ptr<PhysicsWorld> world = make_world(config);
-    PartConfig nose = at(sphere(0.5, 1), {1, 0, 0});  // beside the centre of mass
+    PartConfig nose = at(sphere(0.5, 1), {1, 0, 0});  // beside the center of mass
     sim::Body& flying = add(*world, body("flying", {sphere(0.5, 1), nose}), translation(0, 0, 0));
     flying.set_velocity_W({2, 0, 0}, Vector3d::Zero());
     for (int i = 0; i < 300; ++i) world->step(i);

@@ -57,8 +57,8 @@ TEST(JointDamping, SlowsEachKindOfJointByItsRate) {
   }
 }
 
-TEST(JointDamping, OfASliderBesideTheCentresKeepsAllMomentum) {
-  // The bodies are 1 m apart across the slider: a pair of forces at their centres would turn them.
+TEST(JointDamping, OfASliderBesideTheCentersKeepsAllMomentum) {
+  // The bodies are 1 m apart across the slider: a pair of forces at their centers would turn them.
   CubePair rig(damped(JointType::slider, Vector3d::UnitY(), 2), false);
   const auto spin = [&] {
     const auto of_cube = [](const sim::Body& cube, double mass) {
@@ -73,7 +73,7 @@ TEST(JointDamping, OfASliderBesideTheCentresKeepsAllMomentum) {
   rig.run(49);
   EXPECT_LT(rig.joint->velocity(), 0.5 * velocity);
   EXPECT_NEAR((1000 * rig.base->v_WB_W() + cube_kg * rig.arm->v_WB_W()).norm(), 0, 1e-6);
-  EXPECT_NEAR((spin() - before).norm(), 0, 1e-3 * velocity);  // forces at the centres: 0.6 of it
+  EXPECT_NEAR((spin() - before).norm(), 0, 1e-3 * velocity);  // forces at the centers: 0.6 of it
 }
 
 TEST(JointDamping, IsNotPartOfTheEffortOfTheMotorThatWorksAgainstIt) {

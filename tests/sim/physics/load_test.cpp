@@ -131,7 +131,7 @@ TEST(FindPart, ByBodyAndPart) {
   EXPECT_THROW(world->find_part(7, "hull"), std::out_of_range);
 }
 
-/// A beam of 2 kg whose centre is 0.5 m along x from a joint at the origin, joined to a heavy base or to the world.
+/// A beam of 2 kg whose center is 0.5 m along x from a joint at the origin, joined to a heavy base or to the world.
 struct Arm {
   explicit Arm(JointConfig config, bool to_world, bool base_is_second = false, double gravity_mps2 = g) {
     PhysicsConfig physics;

@@ -80,7 +80,7 @@ TEST(ProgramArgs, WrongOnesAreNamedWithTheirPlace) {
 TEST(ProgramArgs, UnknownMissingAndContraryOnesAreErrors) {
   EXPECT_THAT(errors("waypoint_m: []"),
               ElementsAre("w.yaml:1:11: process 'r': unknown argument 'waypoint_m'; did you mean 'waypoints_m'?"));
-  EXPECT_THAT(errors("colour: red"), ElementsAre(HasSubstr("unknown argument 'colour'; known arguments: name, ")));
+  EXPECT_THAT(errors("color: red"), ElementsAre(HasSubstr("unknown argument 'color'; known arguments: name, ")));
   EXPECT_THAT(check(rover(), "{loop: true}").errors, ElementsAre("w.yaml:1:1: process 'r': missing argument 'name'"));
   EXPECT_THAT(check(rover(), "[name]").errors, testing::Not(ElementsAre()));
   EXPECT_THAT(errors("slot: 1"), ElementsAre("w.yaml:1:17: process 'r': 'slot' needs the argument 'slots'"));

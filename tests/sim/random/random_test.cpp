@@ -89,7 +89,7 @@ TEST(Random, SeedNameStepAndDrawAllChangeTheBits) {
   EXPECT_EQ(seen.size(), 10u * 5 * 5 * 20);
 }
 
-TEST(Random, StreamsOfNeighbouringNamesAreUncorrelated) {
+TEST(Random, StreamsOfNeighboringNamesAreUncorrelated) {
   Random a(1, "robot1/imu"), b(1, "robot2/imu");
   const int n = 100000;
   double product = 0;

@@ -18,7 +18,7 @@ using sim::Mesh;
 using sim::RayHit;
 using sim::Vector3d;
 
-/// A field of `cells` x `cells` squares of a metre, two triangles each, the first corner at `corner`.
+/// A field of `cells` x `cells` squares of a meter, two triangles each, the first corner at `corner`.
 Mesh field(int cells, const Vector3d& corner, double slope) {
   Mesh mesh;
   for (int row = 0; row <= cells; ++row)
@@ -85,7 +85,7 @@ TEST(EmbreeMesh, WithoutMaterialsOfItsTrianglesIsOfThatOfThePart) {
   EXPECT_EQ(OneMesh(mesh).down(0.5, 0.25).material, 9);
 }
 
-TEST(EmbreeMesh, InCoordinatesOfAMapKeepsMillimetres) {
+TEST(EmbreeMesh, InCoordinatesOfAMapKeepsMillimeters) {
   const Vector3d corner(500000, 4500000, 250);
   const Mesh mesh = field(100, corner, 0.125);
   const OneMesh one(mesh);
@@ -133,7 +133,7 @@ TEST(EmbreeMesh, EmptyStopsNoRay) {
 TEST(EmbreeMesh, IsHitFromAPointOnIt) {
   const Mesh mesh = field(200, {0, 0, 0}, 0);
   const OneMesh one(mesh);
-  // Less above and below than a float can tell at 100 m from the centre of the mesh.
+  // Less above and below than a float can tell at 100 m from the center of the mesh.
   for (const double height : {1e-9, 1e-7, 1e-6}) {
     const RayHit hit = one.down(3.3, 190.1, height);
     ASSERT_TRUE(hit.hit()) << height;

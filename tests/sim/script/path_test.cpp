@@ -48,7 +48,7 @@ TEST(Path, ASplinePassesItsPointsOpenAndClosed) {
   }
 }
 
-TEST(Path, ASplineIsTravelledAtConstantSpeed) {
+TEST(Path, ASplineIsTraveledAtConstantSpeed) {
   const Path path = Path::through(PathKind::spline, bends, true, {});
   const double du = path.length() / 20000;
   for (int i = 0; i < 20000; ++i) {

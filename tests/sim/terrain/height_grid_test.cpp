@@ -102,7 +102,7 @@ TEST(HeightGrid, RefusesWhatIsNoGround) {
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) grid.at(i, j) = 100 * ((i + j) % 2);
   EXPECT_EQ(error_of([&] { sim::check_heights(grid); }),
-            "is steeper than 89 degrees nearly everywhere: heights and cells in one unit, metres?");
+            "is steeper than 89 degrees nearly everywhere: heights and cells in one unit, meters?");
   EXPECT_EQ(error_of([] { sim::check_grid_size(1, 5); }),
             "is not a grid: it has 1 x 5 points and needs at least 2 x 2");
   EXPECT_EQ(error_of([] { sim::check_grid_size(-4, -5); }),

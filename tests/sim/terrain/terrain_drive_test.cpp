@@ -48,7 +48,7 @@ double vertical_rms_mps2(TerrainCollision collision, double cell_m, const PartCo
 const double closed_form_mps2 =
     std::pow(speed_mps * 2 * std::numbers::pi / wavelength_m, 2) * amplitude_m / std::numbers::sqrt2;
 
-// The wheel goes 1 m/s along the slope, not along x, which takes 1.2 % off v^2; its centre follows a parallel of the
+// The wheel goes 1 m/s along the slope, not along x, which takes 1.2 % off v^2; its center follows a parallel of the
 // sine, whose bend is up to r k^2 A = 2.5 % off at crests and troughs, with both signs; the B-spline takes 0.3 % off A.
 constexpr double sine_tolerance = 0.04;
 

@@ -37,7 +37,7 @@ TEST(AsciiGrid, RowsRunFromNorthToSouthAndTheCornerIsHalfACellOut) {
   EXPECT_EQ(grid.at(2, 0), 3);
 }
 
-TEST(AsciiGrid, KeywordsMayComeInAnyCaseAndOrderAndTheCentreIsThePoint) {
+TEST(AsciiGrid, KeywordsMayComeInAnyCaseAndOrderAndTheCenterIsThePoint) {
   const HeightGrid grid = sim::parse_ascii_grid(
       "NROWS 2\r\nNCols 2\r\nCELLSIZE 2.5\r\nYLLCENTER 7\r\nXLLCENTER -1e1\r\nNODATA_value -1\r\n+1 2 3e0\r\n4", 1,
       Holes::error);

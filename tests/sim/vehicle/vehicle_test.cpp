@@ -39,7 +39,7 @@ void command_for(Driven& driven, const std::string& channel, const Message& mess
   }
 }
 
-TEST(Pioneer, DrivesTwoMetresInFourSeconds) {
+TEST(Pioneer, DrivesTwoMetersInFourSeconds) {
   Driven driven("pioneer_yard");
   test::Listener<shoal::wheel_encoder_t> encoder(driven, "pioneer1.encoder");
   test::Listener<shoal::battery_t> battery(driven, "pioneer1.battery");

@@ -43,7 +43,7 @@ TEST(StartCheck, ReportsAVehicleBelowTheGround) {
             "worlds/test.yaml:5:5: vehicle 'v1': it starts 6 m deep in 'ground'\n");
 }
 
-TEST(StartCheck, IsSilentAboutWhatStandsOrIsAMillimetreDeep) {
+TEST(StartCheck, IsSilentAboutWhatStandsOrIsAMillimeterDeep) {
   EXPECT_EQ(warnings_of_start(spheres({"[0, 0, 1]", "[0, 3, 0.999]", "[0, 6, 5]"}, ground)), "");
 }
 

@@ -455,7 +455,7 @@ class ForgedSnapshot : public DamagedSnapshot {
 };
 
 TEST_F(ForgedSnapshot, WithBodiesWhereNoneCanBeIsRefused) {
-  const sim::Vector3d p_W = world().find_object("crate3")->base().X_WB().translation();  // its centre of mass
+  const sim::Vector3d p_W = world().find_object("crate3")->base().X_WB().translation();  // its center of mass
   const std::size_t p = behind(good, std::array{p_W.x(), p_W.y(), p_W.z()}) - 3 * sizeof(double);
   const std::size_t q = p + 3 * sizeof(double), R = q + 4 * sizeof(double), v = R + 12 * sizeof(double);
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();

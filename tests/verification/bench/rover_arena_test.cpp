@@ -31,7 +31,7 @@ TEST(RoverArena, CrowdsStayInOnePieceAndOnTheGround) {
   for (int i = 0; i < 70; ++i) {
     scene.run_for(0.1);
     for (const auto& vehicle : scene.world().vehicles()) {
-      // The wheels turn about their centres, so a centre shows what is wrong with the joint.
+      // The wheels turn about their centers, so a center shows what is wrong with the joint.
       const sim::Pose X_BW = vehicle->base().X_WB().inverse();
       const sim::Vector3d left = X_BW * vehicle->body("left_wheel").X_WB().translation();
       const sim::Vector3d right = X_BW * vehicle->body("right_wheel").X_WB().translation();

@@ -39,7 +39,7 @@ TEST(ShapeEdges, AreThoseOfTheShapes) {
       EXPECT_NEAR(point.head<2>().norm(), 0.5, 1e-12);
       EXPECT_NEAR(std::abs(point.z()), 2, 1e-12);
     }
-  // The caps of a capsule reach half a metre beyond its ends.
+  // The caps of a capsule reach half a meter beyond its ends.
   part.shape = sim::PartShape::capsule;
   double top_m = 0, bottom_m = 0;
   for (const auto& line : tools::ShapeEdges::lines_of(part))

@@ -170,18 +170,18 @@ TEST_F(LogImage, ShowsNearDepthBrightAndLabelsInTheirColors) {
   shoal::image_t image = grey(0, 0);
   const float depth_m[] = {1.0F, 10.0F};
   set_data(image, devices::pixel_format_float_grey32, 8, depth_m, sizeof depth_m);
-  const sim::Image8 metres = drawn(image);  // read back as RGB: the second pixel begins at 3
-  EXPECT_EQ(metres.data[0], 255);
-  EXPECT_EQ(metres.data[3], 40);  // 255 - 215, the farthest
+  const sim::Image8 meters = drawn(image);  // read back as RGB: the second pixel begins at 3
+  EXPECT_EQ(meters.data[0], 255);
+  EXPECT_EQ(meters.data[3], 40);  // 255 - 215, the farthest
   sim::Image16 levels(2, 1, 1);
   levels.data = {1000, 10000};
   set_data(image, devices::pixel_format_le_grey16, 4, levels.data.data(), 4);
-  EXPECT_EQ(drawn(image).data, metres.data);
+  EXPECT_EQ(drawn(image).data, meters.data);
   sim::Bytes bytes;
   sim::encode_png(levels, bytes);
   set_data(image, devices::pixel_format_png, 0, bytes.data(), bytes.size());
   add_metadata(image, "unit", "mm");
-  EXPECT_EQ(drawn(image).data, metres.data);
+  EXPECT_EQ(drawn(image).data, meters.data);
 
   shoal::image_t labels = grey(0, 0);
   add_metadata(labels, "labels", "1 wall\n2 floor\n");

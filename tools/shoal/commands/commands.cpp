@@ -24,7 +24,7 @@ constexpr Command commands[] = {
     {"check", "files", "Check a world, vehicle, study or motion file without running it"},
     {"view", "view", "Serve a live page of a log, or of a run in another process, in 3-D"},
     {"motion", "motion", "Record, show, check, edit, play and convert motions of robots with joints"},
-    {"snap", "film", "Run a world as fast as possible, without a bus, or a log again, and render an image"},
+    {"snap", "film", "Render an image of a world or a recorded run at a given time"},
     {"film", "film", "Make a film of a recorded run, or of a world without programs"},
     {"map", "film", "Write the true map of a world or log, or one that a program published, for ROS map_server"},
     {"snapshot", "records", "Show the contents of a snapshot file"},

@@ -298,7 +298,7 @@ int drive(const DriveArguments& arguments) {
     if (!arguments.kind.empty()) kind = sim::value_of(drive_kind_words, arguments.kind);
     Driver driver(profile, *vehicle.description(), kind);
     if (by_keys) {
-      std::cerr << fmt::format("hold '{}' to move, '{}' centres, Ctrl-C ends\n", profile.keys.hold,
+      std::cerr << fmt::format("hold '{}' to move, '{}' centers, Ctrl-C ends\n", profile.keys.hold,
                                profile.keys.centre);
       controls = std::make_unique<KeyControls>(profile);
     }

@@ -77,7 +77,7 @@ void add_film_options(CLI::App& command, FilmArguments& arguments) {
       ->type_name("CAMERA")
       ->type_size(1)
       ->allow_extra_args(false);
-  command.add_option("--split", arguments.split, "2: beside the camera that of the vehicle, on board")
+  command.add_option("--split", arguments.split, "2: split screen with the vehicle's on-board camera")
       ->type_name("N")
       ->check(whole_from(1, 2));
   command.add_option("--from", film.from_s, "simulated time of the first frame, s")
@@ -87,7 +87,7 @@ void add_film_options(CLI::App& command, FilmArguments& arguments) {
   command.add_option("--to", film.until_s, "and of the last; without it the end of the log, or 10 s of film")
       ->type_name("S")
       ->check(number_from(0, 1e9));
-  command.add_option("--speed", film.speed, "simulated time by time of the film")
+  command.add_option("--speed", film.speed, "playback speed: simulated seconds per second of film")
       ->type_name("FACTOR")
       ->check(number_from(0.001, 1e6))
       ->capture_default_str();
@@ -122,17 +122,17 @@ void add_clip_options(CLI::App& command, ClipOptions& clips) {
           ->type_name("DIR");
   for (const char* other : {"--out", "--camera", "--split", "--from", "--to"})
     directory->excludes(command.get_option(other));
-  command.add_option("--before", clips.before_s, "of a clip: simulated time before the event, s")
+  command.add_option("--before", clips.before_s, "lead-in before each event, s of simulated time")
       ->type_name("S")
       ->check(number_from(0, 1e6))
       ->capture_default_str()
       ->needs(directory);
-  command.add_option("--after", clips.after_s, "and after it, s")
+  command.add_option("--after", clips.after_s, "and after each event, s")
       ->type_name("S")
       ->check(number_from(0, 1e6))
       ->capture_default_str()
       ->needs(directory);
-  command.add_option("--max-clips", clips.max_clips, "the first events that get a clip")
+  command.add_option("--max-clips", clips.max_clips, "maximum number of clips")
       ->type_name("N")
       ->check(whole_from(1, 10'000))
       ->capture_default_str()
@@ -178,8 +178,9 @@ static void add_film_command(CLI::App& app, int& exit_code) {
         {3, "physics fault"},
         {4, "the log cannot be replayed, the film cannot be written, or ffmpeg failed or is missing"},
         {130, "ended by Ctrl-C; there is no film"}},
-       {"A log is run again with what its programs sent, and compared by nothing: see shoal replay. A world is run "
-        "without its programs."}});
+       {"A log is replayed with its recorded inputs, without verifying it: see shoal replay. A world is run without "
+        "its "
+        "programs."}});
   command->callback([arguments, &exit_code] { exit_code = film(*arguments); });
 }
 

@@ -37,12 +37,12 @@ void add_visibility_option(CLI::App& command, std::string& text) {
 std::optional<double> parse_visibility(const std::string& text) {
   if (text.empty()) return 60;
   if (text == "none") return std::nullopt;
-  double metres = 0;
+  double meters = 0;
   const char* end = text.data() + text.size();
-  const auto [after, error] = std::from_chars(text.data(), end, metres);
-  if (error != std::errc{} || after != end || !(metres >= 0.1 && metres <= 1e6))
+  const auto [after, error] = std::from_chars(text.data(), end, meters);
+  if (error != std::errc{} || after != end || !(meters >= 0.1 && meters <= 1e6))
     throw CLI::ValidationError("--visibility", "must be from 0.1 to 1e6 m, or none, got '" + text + "'");
-  return metres;
+  return meters;
 }
 
 CLI::Option* add_overlay_option(CLI::App& command, std::string& text) {

@@ -22,7 +22,7 @@ ImageSize parse_image_size(const std::string& text);
 
 /// Adds `--visibility M`.
 void add_visibility_option(CLI::App& command, std::string& text);
-/// Parses it: metres, or `none` for invisible water; 60 without it.  Throws CLI::ValidationError.
+/// Parses it: meters, or `none` for invisible water; 60 without it.  Throws CLI::ValidationError.
 std::optional<double> parse_visibility(const std::string& text);
 
 /// Adds `--overlay LIST`.

@@ -37,7 +37,7 @@ std::optional<MapArea> parse_area(const std::string& text) {
     const bool good =
         error == std::errc{} && std::abs(numbers[i]) <= 1e7 && (i == 3 ? next == end : next != end && *next == ',');
     if (!good)
-      throw CLI::ValidationError("--area", "must be four numbers in metres such as -20,-15,20,15, got '" + text + "'");
+      throw CLI::ValidationError("--area", "must be four numbers in meters such as -20,-15,20,15, got '" + text + "'");
     at = next + 1;
   }
   return MapArea{numbers[0], numbers[1], numbers[2], numbers[3]};
@@ -143,11 +143,11 @@ void add_map_options(CLI::App& command, MapArguments& arguments) {
   CLI::Option* until = command.add_option("--until", arguments.until_s, "time of the last of them, s")->type_name("S");
   every->check(number_from(1e-6, 1e9))->needs(until);
   until->check(number_from(0, 1e9))->needs(every);
-  command.add_option("--height", arguments.height_m, "height of the map above zero, m, such as that of a lidar")
+  command.add_option("--height", arguments.height_m, "height of the horizontal slice, m, such as that of a lidar")
       ->type_name("M")
       ->check(number_from(-1e6, 1e6))
       ->capture_default_str();
-  command.add_option("--cell", arguments.cell_m, "side of a cell, m")
+  command.add_option("--cell", arguments.cell_m, "map resolution (cell size), m")
       ->type_name("M")
       ->check(number_from(0.001, 1000))
       ->capture_default_str();
@@ -170,7 +170,7 @@ static void add_map_command(CLI::App& app, int& exit_code) {
   add_map_options(*command, *arguments);
   command
       ->add_option("--channel", arguments->channel,
-                   "instead of the truth the last shoal.occupancy_grid_t on this channel of a log")
+                   "export the last shoal.occupancy_grid_t on this channel of a log instead of the ground truth")
       ->type_name("CHANNEL");
   command->add_option("--out", arguments->out, "image, a .png; the .yaml beside it has its place and size")
       ->type_name("FILE")

@@ -71,7 +71,7 @@ Numbers parse_numbers(const char* option, const std::string& text, char separato
 }
 
 sim::Vector3d parse_point(const char* option, const std::string& text) {
-  const Numbers numbers = parse_numbers(option, text, ',', 3, "three numbers in metres such as 4,-3,2.5");
+  const Numbers numbers = parse_numbers(option, text, ',', 3, "three numbers in meters such as 4,-3,2.5");
   for (const double number : numbers)
     if (std::abs(number) > 1e7) throw CLI::ValidationError(option, "must be within 1e7 m, got '" + text + "'");
   return {numbers[0], numbers[1], numbers[2]};

@@ -58,7 +58,7 @@ std::vector<double> parse_ranges(const std::string& text) {
   if (!numbers || !((*numbers)[0] > 0) || (*numbers)[1] < (*numbers)[0] || !((*numbers)[2] > 0) ||
       ((*numbers)[1] - (*numbers)[0]) / (*numbers)[2] > 10000)
     throw CLI::ValidationError("--ranges",
-                               "must be from:to:step in metres, 10000 steps at most, such as 100:5000:100, "
+                               "must be from:to:step in meters, 10000 steps at most, such as 100:5000:100, "
                                "got '" +
                                    text + "'");
   std::vector<double> ranges_m;
@@ -288,7 +288,7 @@ int show(AcousticsArguments& arguments) {
 }
 
 void add_link_options(CLI::App& command, AcousticsArguments& arguments) {
-  command.add_option("--from", arguments.from, "sender: vehicle/device, a vehicle, or a place X,Y,Z in metres")
+  command.add_option("--from", arguments.from, "sender: vehicle/device, a vehicle, or a place X,Y,Z in meters")
       ->type_name("END");
   command.add_option("--to", arguments.to, "receiver: the same")->type_name("END");
   command.add_option("--range", arguments.range_m, "distance, m, without --from and --to")
@@ -315,7 +315,7 @@ void add_signal_options(CLI::App& command, AcousticsArguments& arguments) {
       ->check(number_from(-100, 300));
   command
       .add_option("--frequency", arguments.frequency_Hz,
-                  "centre of the band, Hz; without it that of the sending modem, else 25000")
+                  "center of the band, Hz; without it that of the sending modem, else 25000")
       ->type_name("HZ")
       ->check(number_from(10, 1e6));
   command

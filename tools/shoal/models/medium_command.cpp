@@ -33,7 +33,7 @@ sim::Vector3d parse_point(const std::string& text) {
     const bool good =
         error == std::errc{} && std::abs(point[axis]) <= 1e7 && (axis == 2 ? next == end : next != end && *next == ',');
     if (!good)
-      throw CLI::ValidationError("--at", "must be three numbers in metres such as 4,-3,-2.5, got '" + text + "'");
+      throw CLI::ValidationError("--at", "must be three numbers in meters such as 4,-3,-2.5, got '" + text + "'");
     at = next + 1;
   }
   return point;

@@ -69,7 +69,7 @@ static void add_mesh_command(CLI::App& app, int& exit_code) {
   command->add_option("--out", options->out, "output file, .stl (binary) or .obj")->type_name("FILE");
   command
       ->add_option("--scale", options->import.scale,
-                   "factor from units of the file to metres; Collada's own unit is applied")
+                   "factor from units of the file to meters; Collada's own unit is applied")
       ->type_name("FACTOR")
       ->check(number_from(1e-9, 1e9))
       ->capture_default_str();

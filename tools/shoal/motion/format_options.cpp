@@ -37,7 +37,7 @@ void add_format_options(CLI::App& command, FormatArguments& arguments) {
           "webots: control step of the player that repeats the file; the file then ends one step before the loop does")
       ->type_name("MS")
       ->check(command_line::number_from(1, 10000).description(""));
-  command.add_option("--row-ms", arguments.row_ms, "opencat: time of a row of a gait, and of a step of a behaviour")
+  command.add_option("--row-ms", arguments.row_ms, "opencat: time of a row of a gait, and of a step of a behavior")
       ->type_name("MS")
       ->check(command_line::number_from(0.1, 10000).description(""))
       ->capture_default_str();

@@ -9,7 +9,7 @@
 
 namespace tools {
 
-constexpr double mm = 1000;  ///< in a metre
+constexpr double mm = 1000;  ///< in a meter
 
 /// Each function adds a sub-command of `shoal motion`.
 void add_motion_show_command(CLI::App& motion, int& exit_code);

@@ -49,7 +49,7 @@ int export_motion(ExportArguments& arguments) {
   if (!arguments.skill.empty())
     options.skill = arguments.skill == "posture" ? SkillKind::posture
                     : arguments.skill == "gait"  ? SkillKind::gait
-                                                 : SkillKind::behaviour;
+                                                 : SkillKind::behavior;
   Losses losses;
   const std::vector<ExportedFile> files = files_of_motion(format, motion, names, options, losses);
   if (!may_lose(arguments, losses)) return exit_failed;
@@ -84,9 +84,9 @@ void add_motion_export_command(CLI::App& motion, int& exit_code) {
       ->add_option("--design", arguments->options.design,
                    "mtn: design label of the robot; unset: by the names of joints")
       ->type_name("LABEL");
-  command->add_option("--skill", arguments->skill, "opencat: posture, gait or behaviour; unset: by the motion")
+  command->add_option("--skill", arguments->skill, "opencat: posture, gait or behavior; unset: by the motion")
       ->type_name("KIND")
-      ->check(one_of({"posture", "gait", "behaviour"}).description(""));
+      ->check(one_of({"posture", "gait", "behavior"}).description(""));
   command_line::set_help_end(*command, {{"shoal motion export wave.yaml --format mtn --output wave.mtn",
                                          "shoal motion export trot.yaml --output trot.motion --loop-step-ms 16",
                                          "shoal motion export wave.yaml --vehicle ers7 --output wave.mot --strict",

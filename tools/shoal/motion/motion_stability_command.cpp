@@ -108,7 +108,7 @@ int print_table(const StabilityArguments& arguments, const sim::JointMotion& mot
   std::cout << fmt::format(
       "margins: least until the next row, of steps with three contacts or more (nan: none); static and capture are "
       "negative outside of the support; push: greatest impulse that the vehicle of {:.3f} kg withstands in the worst "
-      "of {} directions, at the centre of mass of its first body, up to {:.3f} N s\n{}: {}\n",
+      "of {} directions, at the center of mass of its first body, up to {:.3f} N s\n{}: {}\n",
       mass_kg, arguments.push.directions, mass_kg * arguments.push.greatest_mps, motion.name,
       class_of(least_Ns / mass_kg, arguments));
   return least_Ns <= 0 ? exit_failed : exit_ok;

@@ -48,7 +48,7 @@ void RecordLine::show(MotionRecorder& recorder, const JointCommands& commands, c
   if (commands.speed() != 1) line += fmt::format("  speed {:.2f}", commands.speed());
   if (shows_set_ && !commands.set().empty()) line += "  set " + commands.set();
   line = sim::cut_to(line + joints_text(recorder, velocities), max_columns);
-  if (support && support->static_margin_m < safe_margin_m && sim::may_use_colour(STDERR_FILENO))
+  if (support && support->static_margin_m < safe_margin_m && sim::may_use_color(STDERR_FILENO))
     line.replace(margin_at, margin.size(), "\x1b[31m" + margin + "\x1b[39m");
   std::cerr << "\r\x1b[K" << line << std::flush;
   has_line_ = true;

@@ -13,17 +13,15 @@ void add_page_options(CLI::App& command, ViewOptions& view) {
       ->capture_default_str();
   command
       .add_option("--view-host", view.host,
-                  "address at which the live page listens; another than of this machine demands the token to read, too")
+                  "address at which the live page listens; others than local ones require the token for reading, too")
       ->type_name("ADDRESS")
       ->capture_default_str();
   command.add_option("--view-origin", view.origins, "further web site whose pages may connect")
       ->type_name("URL")
       ->type_size(1)
       ->allow_extra_args(false);
-  command.add_flag(
-      "--foxglove-control", view.foxglove_control,
-      "any program on this machine that connects as Foxglove does may pause, rewind and change the run, or "
-      "play the log");
+  command.add_flag("--foxglove-control", view.foxglove_control,
+                   "any local Foxglove client may pause, rewind and change the run, or play the log");
   command.add_option("--view-page", view.page_directory, "folder with the page, for its development")->type_name("DIR");
 }
 

@@ -87,7 +87,7 @@ std::string devices_page() {
                      "## Keys of every device\n\n" +
                      sim::markdown_table(common_params()) +
                      "\n## Noise\n\nA key of type map that speaks of an error has these keys. They compose in this "
-                     "order: scale error, bias, random walk, Gauss-Markov, gaussian, uniform, outliers, quantisation, "
+                     "order: scale error, bias, random walk, Gauss-Markov, gaussian, uniform, outliers, quantization, "
                      "saturation.\n\n" +
                      sim::markdown_table(params_of<sim::NoiseParams>());
   for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all())
@@ -100,7 +100,7 @@ std::string world_format_page() {
   return fmt::format(fmt::runtime(generated), "world_format") +
          "# World and vehicle files\n\n"
          "YAML. Every error is reported as `file:line:column: who: rule, value`; an unknown key is an error. Lengths "
-         "are metres, masses kilograms, times seconds; keys ending in `_deg` are degrees. Frames: see "
+         "are meters, masses kilograms, times seconds; keys ending in `_deg` are degrees. Frames: see "
          "[conventions.md](../develop/conventions.md).\n\n"
          "* `include: FILE` (or a list) at the top of a file: the included file is the base over which this one is "
          "merged, maps key by key, lists of named items item by item, anything else replaced. It is looked up "

@@ -129,7 +129,7 @@ bodies:
       # 1 cm to the rear, so that it tilts on the rear caster.
       - {name: chassis, shape: box, size_m: [0.5, 0.4, 0.12], position_m: [-0.01, 0, 0.14], mass_kg: 17,
          color: "#3070c0"}
-      # Half a millimetre above the ground, so that the wheels carry the weight.
+      # Half a millimeter above the ground, so that the wheels carry the weight.
       - {name: front_caster, shape: sphere, radius_m: 0.04, position_m: [0.2, 0, 0.0405], material: slick}
       - {name: rear_caster, shape: sphere, radius_m: 0.04, position_m: [-0.2, 0, 0.0405], material: slick}
   # Spheres as wheels have one contact with the ground, at the exact place.
@@ -175,7 +175,7 @@ constexpr const char* auv_text =
 #   shoal check NAME.yaml                              every mistake, with line and column
 #   shoal new world bay --under-water --vehicle NAME.yaml    a world with it
 # Every key, with its default: shoal describe vehicle, shoal list devices, shoal describe dvl.
-# The vehicle frame: x forward, y left, z up, its origin at the centre of buoyancy.
+# The vehicle frame: x forward, y left, z up, its origin at the center of buoyancy.
 # Hull, fins and propeller are those of the included file.  For a hull of your own remove `include:` and write `bodies:`
 # with `hydrodynamics:` and the devices `thruster` and `fin`, as that file does: docs/models/coefficients.md.
 include: remus100.yaml

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Returns an example without its licence line, for a program and a vehicle with other names.
+/// Returns an example without its license line, for a program and a vehicle with other names.
 std::string adapted(const fs::path& file, const std::string& name, const std::string& vehicle) {
   std::ifstream in(file, std::ios::binary);
   if (!in) throw std::runtime_error(file.string() + ": cannot be read; the installation is incomplete");

@@ -128,12 +128,12 @@ int plan(const std::string& path, const StudyChanges& changes, std::string outpu
 /// Adds the options that change what a study file says.
 void add_change_options(CLI::App& command, std::string& seeds, StudyChanges& changes, std::string& output) {
   command.add_option("--seeds", seeds, "instead of those of the study: 7, 1-10 or 1-3,8")->type_name("SEEDS");
-  command.add_option("--duration", changes.duration_s, "simulated seconds of each run, for a first look")
+  command
+      .add_option("--duration", changes.duration_s, "shorten every run to this simulated duration, s, for a quick look")
       ->type_name("S")
       ->check(number_from(1e-6, 1e9));
   command
-      .add_option("--output", output,
-                  "directory; without it results/NAME-OF-STUDY, with --duration 10 results/NAME-OF-STUDY_10s")
+      .add_option("--output", output, "output folder; without it results/STUDY, with --duration 10 results/STUDY_10s")
       ->type_name("DIR");
 }
 

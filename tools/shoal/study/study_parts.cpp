@@ -27,9 +27,9 @@ std::string usual_output(const LoadedStudy& study, const StudyChanges& changes) 
 void choose_jobs(const LoadedStudy& study, StudyOptions& options) {
   const auto shared = find_shared_port(study);
   if (shared && options.jobs > 1)
-    sim::throw_config_error(shared->place, shared->who,
-                            "runs at the same time cannot have one serial port, '" + shared->path +
-                                "': put {run} into its path, or use --jobs 1");
+    sim::throw_config_error(
+        shared->place, shared->who,
+        "concurrent runs cannot share serial port '" + shared->path + "': put {run} into its path, or use --jobs 1");
   const int processors = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const bool chosen = options.jobs > 0;
   if (!chosen) options.jobs = shared ? 1 : std::max(1, processors / 2);

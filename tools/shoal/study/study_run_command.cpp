@@ -73,7 +73,7 @@ int run_planned(StudyRunArguments& arguments) {
     options.any_version = true;
     options.allow_paths = arguments.load.allow_paths;
     if (arguments.engine != "local" && options.fresh)
-      throw CLI::ValidationError("--fresh", "goes with --engine local only");
+      throw CLI::ValidationError("--fresh", "is only valid with --engine local");
     // The processors of this machine say nothing about those of a cluster.
     if (arguments.engine == "slurm" && options.jobs == 0) options.jobs = 1;
     choose_jobs(planned.study, options);
@@ -85,7 +85,8 @@ int run_planned(StudyRunArguments& arguments) {
     if (!arguments.indices.empty() || !planned.study.config.until) {
       execute(arguments, planned, which, progress);
     } else {
-      if (arguments.no_wait) throw CLI::ValidationError("--no-wait", "does not go with a study that has 'until'");
+      if (arguments.no_wait)
+        throw CLI::ValidationError("--no-wait", "cannot be combined with a study that has 'until'");
       run_in_batches(planned.study, planned.runs,
                      [&](const std::vector<std::size_t>& batch) { execute(arguments, planned, batch, progress); });
       drop_needless_seeds(planned.study, planned.runs);

@@ -52,7 +52,7 @@ int tune(TuneArguments& arguments) {
   check_figure(study, options.figure);
   if (options.study.output.empty()) options.study.output = "results/" + study.config.name + "_tune";
   options.study.allow_paths = arguments.changes.load.allow_paths;
-  options.maximise = arguments.goal == "max";
+  options.maximize = arguments.goal == "max";
   choose_jobs(study, options.study);
   catch_signals(true);
   try {
@@ -123,7 +123,7 @@ static void add_tune_command(CLI::App& app, int& exit_code) {
   command->add_option("--duration", arguments->changes.duration_s, "simulated seconds of each run")
       ->type_name("S")
       ->check(number_from(1e-6, 1e9));
-  command->add_option("--output", options.study.output, "directory; without it results/NAME-OF-STUDY_tune")
+  command->add_option("--output", options.study.output, "output folder; without it results/STUDY_tune")
       ->type_name("DIR");
   add_jobs_options(*command, options.study);
   add_allow_path_option(*command, arguments->changes.load);

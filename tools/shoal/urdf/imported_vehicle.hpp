@@ -23,7 +23,7 @@ struct ImportedBody {
   sim::Pose X_VB = sim::Pose::Identity();
   double mass_kg = 0;
   sim::Vector3d center_of_mass_m = sim::Vector3d::Zero();  ///< in B
-  sim::Matrix3d inertia_kgm2 = sim::Matrix3d::Zero();      ///< about the centre of mass, in axes of B
+  sim::Matrix3d inertia_kgm2 = sim::Matrix3d::Zero();      ///< about the center of mass, in axes of B
   bool lacks_mass = false;     ///< its mass is not known: complete_masses() sets it, and the inertia
   bool lacks_inertia = false;  ///< its inertia is not known: complete_masses() sets it
   std::vector<ImportedPart> parts;

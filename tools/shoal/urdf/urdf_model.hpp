@@ -16,9 +16,9 @@ inline constexpr std::size_t max_urdf_bytes = 16u << 20;
 inline constexpr std::size_t max_urdf_links = 2000;
 inline constexpr std::size_t max_urdf_shapes = 20000;
 
-/// `<inertial>`: mass, centre of mass and inertia about it.
+/// `<inertial>`: mass, center of mass and inertia about it.
 struct UrdfInertial {
-  sim::Pose X_LC = sim::Pose::Identity();  ///< frame of the inertia, at the centre of mass, in the link's frame L
+  sim::Pose X_LC = sim::Pose::Identity();  ///< frame of the inertia, at the center of mass, in the link's frame L
   double mass_kg = 0;
   sim::Matrix3d inertia_kgm2 = sim::Matrix3d::Zero();
 };

@@ -82,7 +82,7 @@ LogIndex read_index(const std::string& log) {
 std::optional<LogDifference> compare(const ViewArguments& arguments, const LogIndex& a, const LogIndex& b) {
   const auto difference = first_difference(arguments.logs[0], a, arguments.logs[1], b);
   if (!difference)
-    std::cout << "no difference as far as both logs reach\n";
+    std::cout << "no difference over the common time span\n";
   else
     std::cout << fmt::format("first difference: {}{:.3f} s, by {}\n",
                              difference->step ? fmt::format("step {}, ", *difference->step) : "",
@@ -118,7 +118,7 @@ int view_again(const ViewArguments& arguments) {
   options.launch = arguments.launch;
   options.lcm_url = arguments.lcm_url;
   const auto run = std::make_unique<ResimulatedRun>(options, short_version());
-  std::cout << fmt::format("{}: world {}, run again up to {:.3f} s; programs: {}\n", options.log,
+  std::cout << fmt::format("{}: world {}, re-simulated to t = {:.3f} s; programs: {}\n", options.log,
                            run->world().config().name, run->end_s(), run->programs());
   for (const std::string& command : run->commands())
     std::cout << "a branch starts: " << sim::printable(sim::shortened(command, 300)) << '\n';

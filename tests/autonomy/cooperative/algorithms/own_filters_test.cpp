@@ -165,7 +165,7 @@ TEST(FixedLagSmoother, IsTheKalmanFilterOfALinearProblem) {
   setup.team[0].errors.clock_drift = 1e-6;  // a state without noise
   const auto smoother = started("fls", setup), filter = started("naive", setup);
   const auto sender = started("naive", nav_setup(2, 1, {-far_m, 0}, 3));
-  for (int i = 1; i <= 30; ++i) {  // 300 s: the oldest are marginalised
+  for (int i = 1; i <= 30; ++i) {  // 300 s: the oldest are marginalized
     const Time now = 10 * i * nav_second;
     for (const auto& own : {smoother.get(), filter.get()}) {
       own->moved(now, {0.1, 0}, 0.01 * Matrix2::Identity());
@@ -179,7 +179,7 @@ TEST(FixedLagSmoother, IsTheKalmanFilterOfALinearProblem) {
   }
 }
 
-TEST(FixedLagSmoother, FindsAStartThatIsWrongByHundredsOfMetres) {
+TEST(FixedLagSmoother, FindsAStartThatIsWrongByHundredsOfMeters) {
   navigation::Setup setup = nav_setup(3, 0, {0, 0}, 200);
   const auto smoother = started("fls", setup);
   const auto west = started("naive", nav_setup(3, 1, {-300, 0}, 0.1));

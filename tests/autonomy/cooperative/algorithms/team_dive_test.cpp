@@ -47,7 +47,7 @@ TEST(TeamDive, OneVehicleWithSatellitesHelpsThroughAChain) {
   EXPECT_LT(iu.rms_m(), ci.rms_m());
 }
 
-TEST(TeamDive, AllThatHearTheCraftAreBetterThanTwoMetres) {
+TEST(TeamDive, AllThatHearTheCraftAreBetterThanTwoMeters) {
   const DiveScore naive = run_dive({}, "naive", seeds), sci = run_dive({}, "sci", seeds),
                   osm = run_dive({}, "osm", seeds), cekf = run_dive({}, "cekf", seeds);
   EXPECT_GT(naive.nees_mean(), 3);

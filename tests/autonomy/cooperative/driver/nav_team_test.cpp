@@ -89,7 +89,7 @@ TEST(VehicleReports, NavigatesTheModemAndReportsTheOrigin) {
   EXPECT_FALSE(reports.setup());
   EXPECT_TRUE(reports.receive(fix).empty());
   ASSERT_TRUE(reports.setup());
-  // The antenna is 1 m behind the origin, the modem half a metre ahead.
+  // The antenna is 1 m behind the origin, the modem half a meter ahead.
   EXPECT_NEAR(reports.setup()->position_W.x(), 10, 1e-9);
   EXPECT_NEAR(reports.setup()->position_W.y(), 21.5, 1e-9);
   Estimate estimate;

@@ -72,7 +72,7 @@ TEST(SoundRanges, RaysThroughAThermoclineAgreeWithBellhop) {
     EXPECT_NEAR(*ranges.range_m(SoundModel::rays, 1e-3 * time_ms, 1, 50), std::hypot(level_m, 49), 5e-3) << level_m;
 }
 
-TEST(SoundRanges, StraightLinesAreFiveMetresWrongAtAKilometreBelowAThermocline) {
+TEST(SoundRanges, StraightLinesAreFiveMetersWrongAtAKilometerBelowAThermocline) {
   const SoundRanges ranges = ranges_over_thermocline();
   const double time_s = 0.66303491;  // 1 km
   const double rays_m = *ranges.range_m(SoundModel::rays, time_s, 1, 50);

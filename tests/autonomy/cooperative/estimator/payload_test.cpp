@@ -13,7 +13,7 @@ using navigation::PayloadReader;
 using navigation::PayloadWriter;
 using navigation::Position;
 
-TEST(Payload, PositionComesBackWithinACentimetre) {
+TEST(Payload, PositionComesBackWithinACentimeter) {
   Position sent;
   sent.p_W << 1234.567, -8.004;
   sent.P << 4, 0.6, 0.6, 0.25;

@@ -108,7 +108,7 @@ TEST_F(LandOffline, ASightHasThePayloadOfThatInstantWithoutRadio) {
   EXPECT_EQ(run("naive").frames_said, end_s);
 }
 
-TEST_F(LandOffline, ASightAfterAMessageHasItsPayloadMovedByWhatTheSenderTravelled) {
+TEST_F(LandOffline, ASightAfterAMessageHasItsPayloadMovedByWhatTheSenderTraveled) {
   for (int t = 1; t <= end_s; ++t) sight(t);
   for (int t = 0; t < end_s; ++t) message(t);
   const OfflineRun naive = run("naive");

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "autonomy/acomms/state_packet.hpp"
-#include "autonomy/behaviours/make_behaviour.hpp"
+#include "autonomy/behaviors/make_behavior.hpp"
 #include "autonomy/missions/marine/coop_auv.hpp"
 #include "sim/random/random.hpp"
 

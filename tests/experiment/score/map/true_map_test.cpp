@@ -108,7 +108,7 @@ TEST(TrueMap, AreaIsThatOfTheObjectsAtItsHeight) {
                 "  - {name: lamp, fixed: true, position_m: [30, 0, 5], parts: [{shape: box, size_m: [1, 1, 1]}]}\n"));
   const auto area = tools::area_of_objects(test.world, 0.3);
   ASSERT_TRUE(area);
-  // 2.5 to 3.5 and -2.5 to -1.5, a metre more, in whole metres.
+  // 2.5 to 3.5 and -2.5 to -1.5, a meter more, in whole meters.
   EXPECT_EQ(area->x_min_m, 1);
   EXPECT_EQ(area->x_max_m, 5);
   EXPECT_EQ(area->y_min_m, -4);

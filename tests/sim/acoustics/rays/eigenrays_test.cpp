@@ -47,11 +47,11 @@ TEST(Eigenrays, RaysInOneGradientAreArcsOfCircles) {
       const double time_s =
           std::acosh(1 + g * g * (range_m * range_m + deeper_m * deeper_m) / (2 * c1 * c2)) / std::abs(g);
       EXPECT_NEAR(found[0].travel_time_s, time_s, 1e-11) << range_m << ' ' << deeper_m;
-      // The centre of the circle is where c would be 0, and halfway between in the sense of its equation.
+      // The center of the circle is where c would be 0, and halfway between in the sense of its equation.
       const double z1_m = c1 / g, z2_m = c2 / g;
-      const double centre_m = (range_m * range_m + z2_m * z2_m - z1_m * z1_m) / (2 * range_m);
-      EXPECT_NEAR(found[0].launch_rad, std::atan2(centre_m, -z1_m), 1e-9) << range_m << ' ' << deeper_m;
-      EXPECT_NEAR(found[0].arrival_rad, std::atan2(centre_m - range_m, -z2_m), 1e-9) << range_m << ' ' << deeper_m;
+      const double center_m = (range_m * range_m + z2_m * z2_m - z1_m * z1_m) / (2 * range_m);
+      EXPECT_NEAR(found[0].launch_rad, std::atan2(center_m, -z1_m), 1e-9) << range_m << ' ' << deeper_m;
+      EXPECT_NEAR(found[0].arrival_rad, std::atan2(center_m - range_m, -z2_m), 1e-9) << range_m << ' ' << deeper_m;
     }
 }
 

@@ -7,7 +7,7 @@ Dormand and Prince's RK45 with the range as the variable, in the continuous prof
 
     dz/dr = tan a    da/dr = -c'(z) / c    dt/dr = 1 / (c cos a)         (a: angle below the horizontal)
 
-so the ray from the start to its end is known without a search.  `spread` is |dz/dlaunch| / range, by two neighbouring
+so the ray from the start to its end is known without a search.  `spread` is |dz/dlaunch| / range, by two neighboring
 rays: small near a caustic.
 """
 import math

@@ -97,7 +97,7 @@ TEST(ImportedVehicle, TakesTheSoftLimitsOfASafetyController) {
 }
 
 TEST(ImportedVehicle, MergesAFixedLinkIntoItsParent) {
-  // b is at (1, 0, 0) in a, turned by 90 degrees: its x is y of a, its y is -x of a.  Its centre of mass, (0.5, 0, 0),
+  // b is at (1, 0, 0) in a, turned by 90 degrees: its x is y of a, its y is -x of a.  Its center of mass, (0.5, 0, 0),
   // is at (1, 0.5, 0) in a; its box, at (0, 0.2, 0), is at (0.8, 0, 0).  The hinge c is at (0, 0, 0.3) in b, rolled by
   // 90 degrees: its axis y is z of b and of a.
   const tools::ImportedVehicle vehicle = imported(robot_text(
