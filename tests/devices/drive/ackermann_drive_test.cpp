@@ -176,7 +176,7 @@ TEST(AckermannDrive, AWheelbaseThatChangesReachesTheWheelsToo) {
   ASSERT_EQ(test.change("c1/drive", "{wheelbase_m: 0.5}"), "");
   steer(test, 0.6, 0.3);
   test.run_for(1);
-  // The wheel is 0.5 m before the centre of turn and (0.5 / tan 0.3 - 0.15) m beside it; 10 rad/s in the middle.
+  // The wheel is 0.5 m before the center of turn and (0.5 / tan 0.3 - 0.15) m beside it; 10 rad/s in the middle.
   const double ratio = std::hypot(1 - 0.15 * std::tan(0.3) / 0.5, std::tan(0.3));
   EXPECT_NEAR(car(test).joint("fl").motor_velocity(1), 10 * ratio, 1e-9);
 }
@@ -192,7 +192,7 @@ TEST(AckermannDrive, SaysWhatIsWrongWithItsParameters) {
   };
   EXPECT_THAT(error_of(""), testing::HasSubstr("device 'drive': missing key 'drive_joints'"));
   EXPECT_THAT(error_of(rear + ", max_steering_deg: 80"),
-              testing::HasSubstr("at 'max_steering_deg' the centre of turn must lie outside the track"));
+              testing::HasSubstr("at 'max_steering_deg' the center of turn must lie outside the track"));
   EXPECT_THAT(error_of(rear + ", max_speed_mps: -1"), testing::HasSubstr("'max_speed_mps' must be > 0, got -1"));
 }
 

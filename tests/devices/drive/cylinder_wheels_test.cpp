@@ -101,7 +101,7 @@ WheeledRobot burger() {
   return robot;
 }
 
-/// Four wheels at (+-a, +-b) around the middle of the base, with its centre of mass beside it.
+/// Four wheels at (+-a, +-b) around the middle of the base, with its center of mass beside it.
 WheeledRobot four_wheels(double a_m, double b_m, double radius_m, double width_m, double wheel_kg, double base_kg,
                          const std::string& center_m) {
   WheeledRobot robot;
@@ -189,7 +189,7 @@ TEST_P(CylinderWheels, TurnARobotOfTheSizeOfATurtleBot) {
   EXPECT_NEAR(turn_of(burger(), GetParam(), 0.5).rate_radps, 0.5, 0.02 * 0.5);
 }
 
-/// A quasi-static balance of Coulomb's friction under the middles of four wheels, with the loads of the centre of mass,
+/// A quasi-static balance of Coulomb's friction under the middles of four wheels, with the loads of the center of mass,
 /// has 0.3065 rad/s and 0.2678 rad/s at 0.134 m for a track of 2 (b + a^2 / b); the whole lines under the wheels have
 /// 0.3054 and 0.2655.
 TEST_P(CylinderWheels, OfSkidSteeredRobotsTurnThemAsTheirMiddlesDo) {

@@ -74,7 +74,7 @@ TEST(Segway, HasTheMassesOfThePaper) {
   expect(p_AC.z(), "com_height_over_axle");
   expect(test.base().inertia_C_B()(1, 1) + mass_kg * (p_AC.x() * p_AC.x() + p_AC.z() * p_AC.z()),
          "pitch_inertia_about_axle");
-  // Leaning back by this angle its centre of mass is over the axle.
+  // Leaning back by this angle its center of mass is over the axle.
   expect(std::atan2(p_AC.x(), p_AC.z()) * degrees, "static_balance_lean");
   EXPECT_NEAR(test.base().p_BC().y(), 0, 1e-12);
 }

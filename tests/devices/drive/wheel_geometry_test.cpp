@@ -118,7 +118,7 @@ TEST(WheelGeometry, IsThatOfACar) {
   EXPECT_THAT(warnings_of(car(ackermann + ", wheelbase_m: 0.3")),
               HasSubstr("'wheelbase_m' is 0.3, but its joints and wheels make it 0.4: it turns 0.75 times as fast"));
   EXPECT_THAT(warnings_of(car(ackermann + ", track_m: 0.2")),
-              HasSubstr("the axes of its front wheels do not meet in one centre of turn"));
+              HasSubstr("the axes of its front wheels do not meet in one center of turn"));
   EXPECT_THAT(warnings_of(car(ackermann + ", wheel_radius_m: 0.05")), HasSubstr("it drives 1.2 times as fast"));
 }
 

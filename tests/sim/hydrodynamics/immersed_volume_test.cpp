@@ -39,7 +39,7 @@ TEST(ImmersedVolume, OfASphereIsThatOfACap) {
   const ImmersedVolume cap = immersed_sphere(0.3, {Vector3d::UnitZ(), 0.18 - 0.3});
   expect_closed_form(cap.volume_m3, "sphere_immersed_volume", "depth_of_immersion=0.18", "volume");
   expect_closed_form(cap.centroid_m.z(), "sphere_immersed_volume", "depth_of_immersion=0.18",
-                     "centroid_z_above_sphere_center");
+                     "centroid_z_above_sphere_centre");
 }
 
 TEST(ImmersedVolume, OfACapsuleLyingAndStanding) {
