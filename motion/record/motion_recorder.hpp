@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "motion/analysis/motion_stage.hpp"
-#include "motion/analysis/push_test.hpp"
+#include "motion/analysis/push_trials.hpp"
 #include "motion/record/set_points.hpp"
 #include "motion/record/take_journal.hpp"
 

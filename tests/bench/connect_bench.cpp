@@ -7,9 +7,9 @@
 #include <cstdlib>
 #include <numbers>
 
-#include "motion/analysis/standing_poses.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/project_paths.hpp"
+#include "verification/motions/standing_poses.hpp"
 
 int main(int argc, char** argv) {
   const int pairs = argc > 1 ? std::atoi(argv[1]) : 50;

@@ -12,9 +12,9 @@
 #include <string>
 
 #include "messages/yaml/message_writer.hpp"
-#include "motion/analysis/push_prediction.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tests/project_paths.hpp"
+#include "verification/motions/push_prediction.hpp"
 
 namespace {
 

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "experiment/optimize/cma_es.hpp"
-#include "motion/analysis/real_walk.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/project_paths.hpp"
+#include "verification/motions/real_walk.hpp"
 
 namespace {
 

@@ -4,9 +4,9 @@
 #include <gmock/gmock.h>
 
 #include "motion/analysis/motion_check.hpp"
-#include "motion/analysis/standing_poses.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/project_paths.hpp"
+#include "verification/motions/standing_poses.hpp"
 
 namespace {
 

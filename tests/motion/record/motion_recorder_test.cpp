@@ -11,7 +11,7 @@
 
 #include "devices/joint/joint_servo.hpp"
 #include "motion/analysis/motion_check.hpp"
-#include "motion/analysis/push_test.hpp"
+#include "motion/analysis/push_trials.hpp"
 #include "motion/record/recorded_motion.hpp"
 #include "sim/vehicle/mounted_device.hpp"
 #include "sim/world_file/vehicle_loader.hpp"

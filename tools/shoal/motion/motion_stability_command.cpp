@@ -8,7 +8,7 @@
 
 #include "experiment/score/support.hpp"
 #include "experiment/world_files/world_by_name.hpp"
-#include "motion/analysis/push_test.hpp"
+#include "motion/analysis/push_trials.hpp"
 #include "sim/config/message_text.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "motion/analysis/real_walk.hpp"
+#include "verification/motions/real_walk.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "motion/analysis/random_motion.hpp"
+#include "verification/motions/random_motion.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "motion/analysis/push_test.hpp"
-#include "motion/analysis/random_motion.hpp"
+#include "motion/analysis/push_trials.hpp"
+#include "verification/motions/random_motion.hpp"
 
 namespace tools {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "motion/analysis/push_prediction.hpp"
+#include "verification/motions/push_prediction.hpp"
 
 #include <algorithm>
 #include <cmath>

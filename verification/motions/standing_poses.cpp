@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "motion/analysis/standing_poses.hpp"
+#include "verification/motions/standing_poses.hpp"
 
 #include <algorithm>
 #include <numbers>

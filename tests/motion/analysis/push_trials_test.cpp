@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "motion/analysis/push_test.hpp"
+#include "motion/analysis/push_trials.hpp"
 
 #include <gtest/gtest.h>
 
