@@ -59,7 +59,7 @@ Words names_in(const std::string& help, const std::string& section) {
   Words names;
   bool inside = false;
   for (const std::string& line : lines_of(help)) {
-    if (!line.empty() && line[0] != ' ') inside = line == section + ":";
+    if (!line.empty() && line[0] != ' ') inside = line.starts_with(section) && line.back() == ':';
     if (inside && line.size() > 2 && line.starts_with("  ") && line[2] != ' ') names.push_back(line.substr(2));
   }
   return names;

@@ -179,9 +179,18 @@ std::string help_text(const CLI::App& command, std::size_t columns) {
     else
       options.emplace(option == command.get_help_ptr() ? options.begin() : options.end(), names_of(*option),
                       meaning_of(*option));
-  for (const CLI::App* each : commands_of(command)) commands.emplace_back(each->get_name(), each->get_description());
-  text += section("Commands", commands, columns) + section("Arguments", arguments, columns) +
-          section("Options", options, columns);
+  std::string group;
+  const auto finish = [&] {
+    text += section(group == "SUBCOMMANDS" ? "Commands" : "Commands to " + group, commands, columns);  // CLI's default
+    commands.clear();
+  };
+  for (const CLI::App* each : commands_of(command)) {
+    if (each->get_group() != group) finish();
+    group = each->get_group();
+    commands.emplace_back(each->get_name(), each->get_description());
+  }
+  finish();
+  text += section("Arguments", arguments, columns) + section("Options", options, columns);
   const std::string footer = command.get_footer();
   return footer.empty() ? text : text + "\n" + end_text(footer, columns);
 }

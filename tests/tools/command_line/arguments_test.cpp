@@ -138,6 +138,16 @@ TEST(Checks, PrintBoundsAsPeopleWriteThem) {
   EXPECT_EQ(bound_text(-60), "-60");
 }
 
+TEST(Help, ListsCommandsByTheirGroups) {
+  CLI::App app{"A program.", "prog"};
+  for (const auto& [name, group] : {std::pair{"run", "run"}, {"check", "run"}, {"film", "look"}})
+    app.add_subcommand(name, "Do it")->group(group);
+  const std::string text = help_text(app, 80);
+  const std::string groups = "\nCommands to run:\n  run    Do it\n  check  Do it\n\nCommands to look:\n  film  Do it\n";
+  EXPECT_NE(text.find(groups), std::string::npos) << text;
+  EXPECT_NE(help_text(App().app, 80).find("\nCommands:\n  run  Run it\n  log  Look into it\n"), std::string::npos);
+}
+
 TEST(Help, HasNothingOfTheLibraryInside) {
   App app;
   set_help_end(

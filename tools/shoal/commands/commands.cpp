@@ -10,7 +10,12 @@ namespace tools {
 
 namespace {
 
+/// Groups of the help.
+constexpr const char *run = "run worlds", *look = "look at runs", *measure = "measure", *make = "make files",
+                     *connect = "work with a running simulator";
+
 struct Command {
+  const char* group;
   const char* name;
   const char* library;  ///< empty: the command is part of the program
   const char* description;
@@ -18,34 +23,34 @@ struct Command {
 
 /// In the order of the help.  CMakeLists.txt says what each library consists of.
 constexpr Command commands[] = {
-    {"run", "", "Run a world"},
-    {"replay", "records", "Replay the world of a log, and compare"},
-    {"score", "records", "Score a log again, or an estimate that was made elsewhere"},
-    {"check", "files", "Check a world, vehicle, study or motion file without running it"},
-    {"view", "view", "Serve a live page of a log, or of a run in another process, in 3-D"},
-    {"motion", "motion", "Record, show, check, edit, play and convert motions of robots with joints"},
-    {"snap", "film", "Render an image of a world or a recorded run at a given time"},
-    {"film", "film", "Make a film of a recorded run, or of a world without programs"},
-    {"map", "film", "Write the true map of a world or log, or one that a program published, for ROS map_server"},
-    {"snapshot", "records", "Show the contents of a snapshot file"},
-    {"describe", "files", "Describe a device, a message, a program or the keys of a file"},
-    {"list", "", "List shipped worlds and vehicles, device types or message types"},
-    {"new", "files", "Write a world, a vehicle or a program to start with"},
-    {"spy", "", "Watch the live channels: rates and decoded fields"},
-    {"control", "", "Send a request to a running simulator and print its answer"},
-    {"drive", "drive", "Drive a vehicle of a running simulator by hand"},
-    {"doctor", "", "Check whether LCM works on this machine, and print how to fix it"},
-    {"log", "records", "Inspect and convert LCM event logs"},
-    {"bench", "models", "Measure the speed of this machine on benchmark scenes"},
-    {"mesh", "models", "Describe a mesh file, and convert it for worlds and vehicles"},
-    {"import", "models", "Convert robots and data sets of other programs"},
-    {"medium", "models", "Show the water and the air of a world at a place and a time"},
-    {"fidelity", "models", "Compare vehicles with published trajectories"},
-    {"acoustics", "models", "Show the propagation of sound between two positions under water"},
-    {"report", "view", "Make one HTML page of the results of a run or a study"},
-    {"bug", "records", "Pack a run into one archive for a report to the developers"},
-    {"study", "study", "Run a world with many seeds and settings, and compare"},
-    {"tune", "study", "Search for the settings of a study that make a figure best"},
+    {run, "run", "", "Run a world"},
+    {run, "replay", "records", "Replay the world of a log, and compare"},
+    {run, "check", "files", "Check a world, vehicle, study or motion file without running it"},
+    {look, "view", "view", "Serve a live page of a log, or of a run in another process, in 3-D"},
+    {look, "snap", "film", "Render an image of a world or a recorded run at a given time"},
+    {look, "film", "film", "Make a film of a recorded run, or of a world without programs"},
+    {look, "map", "film", "Write the true map of a world or log, or one that a program published, for ROS map_server"},
+    {look, "log", "records", "Inspect and convert LCM event logs"},
+    {look, "snapshot", "records", "Show the contents of a snapshot file"},
+    {look, "medium", "models", "Show the water and the air of a world at a place and a time"},
+    {look, "acoustics", "models", "Show the propagation of sound between two positions under water"},
+    {measure, "study", "study", "Run a world with many seeds and settings, and compare"},
+    {measure, "tune", "study", "Search for the settings of a study that make a figure best"},
+    {measure, "score", "records", "Score a log again, or an estimate that was made elsewhere"},
+    {measure, "report", "view", "Make one HTML page of the results of a run or a study"},
+    {measure, "bench", "models", "Measure the speed of this machine on benchmark scenes"},
+    {measure, "fidelity", "models", "Compare vehicles with published trajectories"},
+    {make, "new", "files", "Write a world, a vehicle or a program to start with"},
+    {make, "list", "", "List shipped worlds and vehicles, device types or message types"},
+    {make, "describe", "files", "Describe a device, a message, a program or the keys of a file"},
+    {make, "motion", "motion", "Record, show, check, edit, play and convert motions of robots with joints"},
+    {make, "import", "models", "Convert robots and data sets of other programs"},
+    {make, "mesh", "models", "Describe a mesh file, and convert it for worlds and vehicles"},
+    {connect, "control", "", "Send a request to a running simulator and print its answer"},
+    {connect, "drive", "drive", "Drive a vehicle of a running simulator by hand"},
+    {connect, "spy", "", "Watch the live channels: rates and decoded fields"},
+    {connect, "doctor", "", "Check whether LCM works on this machine, and print how to fix it"},
+    {connect, "bug", "records", "Pack a run into one archive for a report to the developers"},
 };
 
 /// Commands that people know from other programs, and what does the same.
@@ -96,7 +101,7 @@ std::string meant_call(const std::string& name) {
 }
 
 void list_commands(CLI::App& app) {
-  for (const Command& command : commands) app.add_subcommand(command.name, command.description);
+  for (const Command& command : commands) app.add_subcommand(command.name, command.description)->group(command.group);
 }
 
 void complete_command(CLI::App& app, int& exit_code, const std::string& name) {
