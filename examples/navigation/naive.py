@@ -3,7 +3,7 @@
 
     shoal-nav --log run.lcm --algorithm naive,python:examples/navigation/naive.Naive
 
-An extended Kalman filter that takes what others say as independent.  Without sights of other vehicles, saw().
+An extended Kalman filter that treats received estimates as independent.  Without relative measurements, on_bearing().
 docs/guides/compare_estimators.md has the calls.
 """
 
@@ -21,7 +21,7 @@ class Naive:
                e["clock_s"], e["clock_drift"]]
         self.x, self.P = np.concatenate([s.position, np.zeros(5)]), np.diag(std) ** 2
 
-    def moved(self, t, v, q):
+    def predict(self, t, v, q):
         e, dt = self.e, t - self.t
         kept = np.exp(-dt / e["slow_heading_time_s"])
         F = np.eye(7)
@@ -40,7 +40,7 @@ class Naive:
         if self.P[0, 0] > self.e["slow_fix_m"] ** 2:
             self.update(np.eye(2, 7), p - self.x[:2], (std**2 + self.e["slow_fix_m"] ** 2) * np.eye(2))
 
-    def heard(self, m):
+    def on_range(self, m):
         if len(m.payload) < 12:
             return
         y, B = unpack(m.payload)  # what the sender said of itself
@@ -53,7 +53,7 @@ class Naive:
         H = np.hstack([u, [[0, 0, 0, self.c, 0]]])
         self.update(H, np.array([m.range - h - self.c * self.x[5]]), R, self.gate)
 
-    def say(self, t, max_bytes):
+    def make_payload(self, t, max_bytes):
         return pack(self.x[:2], self.P[:2, :2])
 
     def now(self, t):

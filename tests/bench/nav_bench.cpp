@@ -42,16 +42,16 @@ void centralized(benchmark::State& state) {
   for (auto _ : state) {
     for (int step = 0; step < 50; ++step) {
       now += second / 5;
-      for (int i = 0; i < vehicles; ++i) team->moved(i, now, {1.5, 0.1 * i}, q);
+      for (int i = 0; i < vehicles; ++i) team->predict(i, now, {1.5, 0.1 * i}, q);
     }
     team->sent(sender, now);
     for (int i = 0; i < vehicles; ++i) {
       if (i == sender) continue;
-      Heard heard;
-      heard.toa = heard.tol = heard.payload_time = now;
-      heard.sender = sender;
-      heard.range_m = 300.0 * std::abs(i - sender);
-      team->heard(i, heard);
+      ReceivedRange received;
+      received.toa = received.tol = received.payload_time = now;
+      received.sender = sender;
+      received.range_m = 300.0 * std::abs(i - sender);
+      team->on_range(i, received);
     }
     sender = (sender + 1) % vehicles;
     events += 50 * vehicles + vehicles;
@@ -70,16 +70,16 @@ void own(benchmark::State& state, const char* name) {
   for (auto _ : state) {
     for (int step = 0; step < 50; ++step) {
       now += second / 5;
-      receiver->moved(now, {1.5, 0.1}, q);
-      sender->moved(now, {1.5, 0.1}, q);
+      receiver->predict(now, {1.5, 0.1}, q);
+      sender->predict(now, {1.5, 0.1}, q);
     }
-    const Bytes payload = sender->say(now, 120);
-    Heard heard;
-    heard.toa = heard.tol = heard.payload_time = now;
-    heard.sender = 1;
-    heard.range_m = 300;
-    heard.payload = payload;
-    receiver->heard(heard);
+    const Bytes payload = sender->make_payload(now, 120);
+    ReceivedRange received;
+    received.toa = received.tol = received.payload_time = now;
+    received.sender = 1;
+    received.range_m = 300;
+    received.payload = payload;
+    receiver->on_range(received);
     events += 102;
   }
   state.SetItemsProcessed(events);

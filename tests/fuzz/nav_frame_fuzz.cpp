@@ -23,7 +23,7 @@ SHOAL_FUZZ_TARGET(nav_frame) {
   if (const auto frame = decode_frame(bytes, tol)) {
     const auto again = decode_frame(encode_frame(*frame, bytes.size()), frame->payload_time);
     fuzz::require(again && again->payload == frame->payload && again->payload_time == frame->payload_time &&
-                      again->sights.size() == frame->sights.size(),
+                      again->relatives.size() == frame->relatives.size(),
                   "a frame that was received can be sent");
   }
   if (!algorithm.make) return;
@@ -32,21 +32,22 @@ SHOAL_FUZZ_TARGET(nav_frame) {
   setup.payload_bytes = 200;
   const auto estimator = algorithm.make();
   estimator->start(setup);
-  Heard heard;
-  heard.sender = 1;
-  heard.range_m = 100;
-  heard.payload = bytes;
+  ReceivedRange received;
+  received.sender = 1;
+  received.range_m = 100;
+  received.payload = bytes;
   for (int i = 1; i < 4; ++i) {
-    heard.toa = i * Time{1'000'000};
-    estimator->moved(heard.toa, {1, 0.5}, 0.01 * Matrix2::Identity());
-    estimator->heard(heard);
+    received.toa = i * Time{1'000'000};
+    estimator->predict(received.toa, {1, 0.5}, 0.01 * Matrix2::Identity());
+    estimator->on_range(received);
     Relative seen;
-    seen.time = heard.toa;
+    seen.time = received.toa;
     seen.other = 1;
     seen.range_m = 100;
     seen.by_other = i % 2 == 0;
     seen.payload = bytes;
-    estimator->saw(seen);
-    fuzz::require(estimator->say(heard.toa, setup.payload_bytes).size() <= setup.payload_bytes, "a payload fits");
+    estimator->on_bearing(seen);
+    fuzz::require(estimator->make_payload(received.toa, setup.payload_bytes).size() <= setup.payload_bytes,
+                  "a payload fits");
   }
 }

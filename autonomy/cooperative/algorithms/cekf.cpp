@@ -25,7 +25,7 @@ class CentralizedEkf final : public TeamEstimator {
     if (numbers_.empty()) filter_ = JointFilter(setup.sound_speed_mps, setup.gate);
     numbers_[vehicle] = filter_.add(setup.errors(), setup.time, setup.position_W, setup.position_std_m);
   }
-  void moved(int vehicle, Time time, const Vector2& v_W, const Matrix2& q) override {
+  void predict(int vehicle, Time time, const Vector2& v_W, const Matrix2& q) override {
     filter_.move(numbers_.at(vehicle), time, v_W, q);
   }
   void fix(int vehicle, Time, const Vector2& p_W, double std_m) override {
@@ -40,12 +40,13 @@ class CentralizedEkf final : public TeamEstimator {
     });
     copies_[{vehicle, time}] = filter_.copy(numbers_.at(vehicle));
   }
-  void heard(int vehicle, const Heard& heard) override {
-    const auto copy = copies_.find({heard.sender, heard.payload_time});
+  void on_range(int vehicle, const ReceivedRange& received) override {
+    const auto copy = copies_.find({received.sender, received.payload_time});
     if (copy == copies_.end()) return;
-    filter_.range(numbers_.at(vehicle), copy->second, heard.own_z_m - heard.sender_z_m, heard.range_m, heard.std_m);
+    filter_.range(numbers_.at(vehicle), copy->second, received.own_z_m - received.sender_z_m, received.range_m,
+                  received.std_m);
   }
-  void saw(int vehicle, const Relative& seen) override {
+  void on_bearing(int vehicle, const Relative& seen) override {
     const auto other = numbers_.find(seen.other);
     if (other == numbers_.end()) return;
     filter_.see(filter_.relative_row(numbers_.at(vehicle), other->second, seen));

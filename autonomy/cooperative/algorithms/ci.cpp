@@ -29,16 +29,16 @@ class CovarianceIntersection final : public OwnFilterEstimator<CovarianceInterse
     need_bytes(setup, "ci", position_bytes + 1);
     OwnFilterEstimator::start(setup);
   }
-  void heard(const Heard& heard) override {
-    PayloadReader reader(heard.payload);
+  void on_range(const ReceivedRange& received) override {
+    PayloadReader reader(received.payload);
     const auto sender = read_position(reader);
     const bool is_independent = reader.whole(1) != 0;
     if (!sender || !reader.ok()) return;
-    const JointFilter::RangeRow row = filter_.range_row(own, *sender, heard.own_z_m - heard.sender_z_m);
-    const double R = heard.std_m * heard.std_m + row.bend_variance_m2 +
-                     sender_clock_variance_m2(setup_, heard.sender, heard.toa - setup_.time);
+    const JointFilter::RangeRow row = filter_.range_row(own, *sender, received.own_z_m - received.sender_z_m);
+    const double R = received.std_m * received.std_m + row.bend_variance_m2 +
+                     sender_clock_variance_m2(setup_, received.sender, received.toa - setup_.time);
     const double b = row.u.dot(sender->P * row.u);
-    const double innovation_m = heard.range_m - row.predicted_m;
+    const double innovation_m = received.range_m - row.predicted_m;
     const double a = row.H.dot(filter_.P() * row.H);
     if (!std::isfinite(innovation_m) || !filter_.within_gate(innovation_m, a + b + R)) return;
     independence_.shared();
@@ -55,7 +55,7 @@ class CovarianceIntersection final : public OwnFilterEstimator<CovarianceInterse
     inflate(best.at);
     filter_.update(row.H, innovation_m, b / (1 - best.at) + R);
   }
-  void saw(const Relative& seen) override {
+  void on_bearing(const Relative& seen) override {
     const auto other = position_in(seen.payload);
     if (!other) return;
     const JointFilter::RelativeRow row = filter_.relative_row(own, *other, seen);
@@ -73,7 +73,7 @@ class CovarianceIntersection final : public OwnFilterEstimator<CovarianceInterse
     inflate(best.at);
     filter_.update(row.H, row.innovation, B / (1 - best.at) + row.R);
   }
-  Bytes say(Time time, std::size_t) override {
+  Bytes make_payload(Time time, std::size_t) override {
     Bytes payload = payload_of(own_position(time));
     payload.push_back(independence_.is_independent() ? 1 : 0);
     independence_.shared();

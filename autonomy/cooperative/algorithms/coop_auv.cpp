@@ -27,28 +27,28 @@ class CoopAuvFilter final : public EstimatorOf<CoopAuvFilter> {
     cooperative_.emplace(setup.time, setup.position_W, setup.position_std_m, params);
     without_ranges_ = cooperative_;
   }
-  void moved(Time time, const Vector2& v_W, const Matrix2& q) override {
+  void predict(Time time, const Vector2& v_W, const Matrix2& q) override {
     const double noise_mpsprtHz = std::sqrt(0.5 * q.trace());
     for (auto* filter : {&cooperative_, &without_ranges_}) (*filter)->predict(time, v_W, noise_mpsprtHz);
   }
   void fix(Time time, const Vector2& p_W, double std_m) override {
     for (auto* filter : {&cooperative_, &without_ranges_}) (*filter)->update_position(time, p_W, std_m);
   }
-  void heard(const Heard& heard) override {
-    const auto sender = position_in(heard.payload);
+  void on_range(const ReceivedRange& received) override {
+    const auto sender = position_in(received.payload);
     if (!sender) return;
-    const double clock_m2 = sender_clock_variance_m2(setup_, heard.sender, heard.toa - setup_.time);
+    const double clock_m2 = sender_clock_variance_m2(setup_, received.sender, received.toa - setup_.time);
     MarineEkf::Range range;
-    range.beacon = heard.sender;
-    range.utime = heard.toa;
-    range.range_m = heard.range_m;
-    range.std_m = std::sqrt(heard.std_m * heard.std_m + clock_m2);
-    range.p_WS << sender->p_W, heard.sender_z_m;
+    range.beacon = received.sender;
+    range.utime = received.toa;
+    range.range_m = received.range_m;
+    range.std_m = std::sqrt(received.std_m * received.std_m + clock_m2);
+    range.p_WS << sender->p_W, received.sender_z_m;
     range.beacon_covariance = sender->P;
-    range.own_z_m = heard.own_z_m;
+    range.own_z_m = received.own_z_m;
     cooperative_->update_range(range, &*without_ranges_);
   }
-  Bytes say(Time time, std::size_t) override {
+  Bytes make_payload(Time time, std::size_t) override {
     const Estimate estimate = now(time);
     return payload_of({estimate.p_W, estimate.P});
   }

@@ -29,7 +29,7 @@ class CoopRoverFilter final : public EstimatorOf<CoopRoverFilter> {
     p_W_ = setup.position_W;
     variance_m2_ = setup.position_std_m * setup.position_std_m;
   }
-  void moved(Time time, const Vector2& v_W, const Matrix2&) override {
+  void predict(Time time, const Vector2& v_W, const Matrix2&) override {
     const Vector2 moved_W = v_W * seconds(time - time_);
     time_ = time;
     v_W_ = v_W;
@@ -60,15 +60,15 @@ class CoopRoverFilter final : public EstimatorOf<CoopRoverFilter> {
     p_W_ += gain * (p_W - p_W_);
     variance_m2_ *= 1 - gain;
   }
-  void heard(const Heard&) override {}
-  void saw(const Relative& seen) override {
+  void on_range(const ReceivedRange&) override {}
+  void on_bearing(const Relative& seen) override {
     const auto other = position_in(seen.payload);
     if (!other || !filter_ || seen.by_other) return;
     const double ahead_rad = seen.bearing_rad - direction_rad_;
     const Vector2 seen_B = seen.range_m * Vector2(std::cos(ahead_rad), std::sin(ahead_rad));
     filter_->update_relative(seen_B, seen.range_std_m, other->p_W, std::sqrt(0.5 * other->P.trace()));
   }
-  Bytes say(Time time, std::size_t) override {
+  Bytes make_payload(Time time, std::size_t) override {
     if (!fix_std_m_) return {};
     const Estimate estimate = now(time);
     // Slow errors of GPS do not average out.

@@ -56,7 +56,7 @@ class DecentralizedInformationFilter final : public EstimatorOf<DecentralizedInf
     mean_before_ = setup.position_W;
     covariance_before_ = unknown_m * unknown_m * Matrix2::Identity();
   }
-  void moved(Time time, const Vector2& v_W, const Matrix2& q) override {
+  void predict(Time time, const Vector2& v_W, const Matrix2& q) override {
     chains_.filter().move(own, time, v_W, q);
     alone_.move(own, time, v_W, q);
   }
@@ -64,30 +64,30 @@ class DecentralizedInformationFilter final : public EstimatorOf<DecentralizedInf
     chains_.filter().fix(own, p_W, std_m);
     alone_.fix(own, p_W, std_m);
   }
-  void heard(const Heard& heard) override {
-    PayloadReader reader(heard.payload);
+  void on_range(const ReceivedRange& received) override {
+    PayloadReader reader(received.payload);
     const auto newest = static_cast<int>(reader.whole(2));
     const auto count = static_cast<int>(reader.whole(1));
     std::deque<ChainLink> links;  // the oldest first
     for (int i = 0; i < count && reader.ok(); ++i) links.push_front(read_link(reader));
     if (!reader.ok() || links.empty()) return;
-    const auto known = newest_.find(heard.sender);
+    const auto known = newest_.find(received.sender);
     const int missing = known == newest_.end() ? cycle : (newest - known->second + cycle) % cycle;
     if (missing == 0) return;
     const SenderChains before = chains_;
     const auto begin = links.size() - std::min(links.size(), static_cast<std::size_t>(missing));
     if (known == newest_.end())
-      chains_.begin(heard.sender, nothing_known(links[begin].about_W));
+      chains_.begin(received.sender, nothing_known(links[begin].about_W));
     else if (static_cast<std::size_t>(missing) > links.size())
-      break_chain(heard.sender, links[begin].about_W);
-    for (std::size_t i = begin; i < links.size(); ++i) chains_.advance(heard.sender, links[i]);
-    chains_.range(heard, sender_clock_variance_m2(setup_, heard.sender, heard.toa - setup_.time));
+      break_chain(received.sender, links[begin].about_W);
+    for (std::size_t i = begin; i < links.size(); ++i) chains_.advance(received.sender, links[i]);
+    chains_.range(received, sender_clock_variance_m2(setup_, received.sender, received.toa - setup_.time));
     if (chains_.is_sound())
-      newest_[heard.sender] = newest;
+      newest_[received.sender] = newest;
     else
       chains_ = before;
   }
-  Bytes say(Time, std::size_t max_bytes) override {
+  Bytes make_payload(Time, std::size_t max_bytes) override {
     Pair both;
     const int places[] = {alone_.offset(before_), alone_.offset(before_) + 1, alone_.offset(own),
                           alone_.offset(own) + 1};

@@ -10,9 +10,9 @@ namespace {
 class DeadReckoning final : public OwnFilterEstimator<DeadReckoning> {
  public:
   static constexpr const char* meaning = "dead reckoning: own motion and satellite fixes only";
-  void heard(const Heard&) override {}
-  void saw(const Relative&) override {}
-  Bytes say(Time, std::size_t) override { return {}; }
+  void on_range(const ReceivedRange&) override {}
+  void on_bearing(const Relative&) override {}
+  Bytes make_payload(Time, std::size_t) override { return {}; }
 };
 
 SHOAL_ESTIMATOR("dr", DeadReckoning);

@@ -204,7 +204,7 @@ class FixedLagSmoother final : public OwnFilterEstimator<FixedLagSmoother> {
     nodes_ = {Node{.time = setup.time}};
     first_ = filter_;
   }
-  void moved(Time time, const Vector2& v_W, const Matrix2& q) override {
+  void predict(Time time, const Vector2& v_W, const Matrix2& q) override {
     if (!(time > nodes_.back().until)) return;
     nodes_.back().motions.push_back({time, v_W, q});
     nodes_.back().until = time;
@@ -216,22 +216,22 @@ class FixedLagSmoother final : public OwnFilterEstimator<FixedLagSmoother> {
     node.fix_W = p_W;
     node.std_m = std_m;
   }
-  void heard(const Heard& heard) override {
-    const auto sender = position_in(heard.payload);
+  void on_range(const ReceivedRange& received) override {
+    const auto sender = position_in(received.payload);
     if (!sender) return;
-    const double dz_m = heard.own_z_m - heard.sender_z_m;
-    const double clock_m2 = sender_clock_variance_m2(setup_, heard.sender, heard.toa - setup_.time);
-    const double std_m = std::sqrt(heard.std_m * heard.std_m + clock_m2);
+    const double dz_m = received.own_z_m - received.sender_z_m;
+    const double clock_m2 = sender_clock_variance_m2(setup_, received.sender, received.toa - setup_.time);
+    const double std_m = std::sqrt(received.std_m * received.std_m + clock_m2);
     JointFilter predicted = filter_;
-    if (predicted.range(own, *sender, dz_m, heard.range_m, std_m) != JointFilter::Outcome::used) return;
-    Node& node = begin_node(heard.toa);
+    if (predicted.range(own, *sender, dz_m, received.range_m, std_m) != JointFilter::Outcome::used) return;
+    Node& node = begin_node(received.toa);
     node.sender = sender;
     node.dz_m = dz_m;
-    node.range_m = heard.range_m;
+    node.range_m = received.range_m;
     node.std_m = std_m;
     solve();
   }
-  Bytes say(Time time, std::size_t) override { return payload_of(own_position(time)); }
+  Bytes make_payload(Time time, std::size_t) override { return payload_of(own_position(time)); }
 
  private:
   Node& begin_node(Time time) {

@@ -40,7 +40,7 @@ class InterleavedUpdate final : public EstimatorOf<InterleavedUpdate> {
     filter.add(setup.errors(), setup.time, setup.position_W, setup.position_std_m);
     bank_ = {{own_set(), filter}};
   }
-  void moved(Time time, const Vector2& v_W, const Matrix2& q) override {
+  void predict(Time time, const Vector2& v_W, const Matrix2& q) override {
     for (auto& [set, filter] : bank_) filter.move(own, time, v_W, q);
   }
   void fix(Time, const Vector2& p_W, double std_m) override {
@@ -49,9 +49,9 @@ class InterleavedUpdate final : public EstimatorOf<InterleavedUpdate> {
     for (auto& [set, filter] : bank_) filter.fix(own, p_W, std_m);
     independence_.fixed(setup_, before, alone.covariance(own));
   }
-  void heard(const Heard& heard) override {
+  void on_range(const ReceivedRange& received) override {
     std::map<Set, JointFilter> results;
-    PayloadReader reader(heard.payload);
+    PayloadReader reader(received.payload);
     while (reader.left() >= filter_bytes()) {
       const auto senders_set = static_cast<Set>(reader.whole(set_bytes_));
       const auto sender = read_position(reader);
@@ -59,8 +59,8 @@ class InterleavedUpdate final : public EstimatorOf<InterleavedUpdate> {
       for (const auto& [set, filter] : bank_) {
         if ((set & senders_set) != 0) continue;
         JointFilter result = filter;
-        if (result.range(own, *sender, heard.own_z_m - heard.sender_z_m, heard.range_m, heard.std_m,
-                         sender_clock_variance_m2(setup_, heard.sender, heard.toa - setup_.time)) ==
+        if (result.range(own, *sender, received.own_z_m - received.sender_z_m, received.range_m, received.std_m,
+                         sender_clock_variance_m2(setup_, received.sender, received.toa - setup_.time)) ==
             JointFilter::Outcome::refused)
           continue;
         keep_better(results, set | senders_set, result);
@@ -69,7 +69,7 @@ class InterleavedUpdate final : public EstimatorOf<InterleavedUpdate> {
     for (const auto& [set, result] : results) keep_better(bank_, set, result);
     while (bank_.size() > max_filters) bank_.erase(worst());
   }
-  Bytes say(Time time, std::size_t max_bytes) override {
+  Bytes make_payload(Time time, std::size_t max_bytes) override {
     std::vector<std::pair<double, Set>> order;
     for (const auto& [set, filter] : bank_) order.emplace_back(trace(filter), set);
     std::sort(order.begin(), order.end());

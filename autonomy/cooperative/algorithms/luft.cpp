@@ -29,7 +29,7 @@ class PairwiseCommunication final : public TeamEstimator {
     own.filter = JointFilter(setup.sound_speed_mps, setup.gate);
     own.filter.add(setup.errors(), setup.time, setup.position_W, setup.position_std_m);
   }
-  void moved(int vehicle, Time time, const Vector2& v_W, const Matrix2& q) override {
+  void predict(int vehicle, Time time, const Vector2& v_W, const Matrix2& q) override {
     Own& own = vehicles_.at(vehicle);
     const Eigen::MatrixXd F = own.filter.jacobian(number, time, v_W);
     const Vector2 before_W = own.filter.position(number);
@@ -48,21 +48,21 @@ class PairwiseCommunication final : public TeamEstimator {
     std::erase_if(own.sent_W, [&](const auto& each) { return seconds(time - each.first) > max_flight_s; });
     own.sent_W[time] = own.traveled_W;
   }
-  void heard(int vehicle, const Heard& heard) override {
-    if (!vehicles_.contains(heard.sender)) return;
-    const Own& sender = vehicles_.at(heard.sender);
-    const auto sent = sender.sent_W.find(heard.payload_time);
+  void on_range(int vehicle, const ReceivedRange& received) override {
+    if (!vehicles_.contains(received.sender)) return;
+    const Own& sender = vehicles_.at(received.sender);
+    const auto sent = sender.sent_W.find(received.payload_time);
     if (sent == sender.sent_W.end()) return;
     // The range refers to the place of the transmission.
     const Vector2 since_W = sender.traveled_W - sent->second;
-    meet(vehicle, heard.sender, [&](JointFilter& both) {
+    meet(vehicle, received.sender, [&](JointFilter& both) {
       shift(both, 1, -since_W);
-      const auto outcome = both.range(0, 1, heard.own_z_m - heard.sender_z_m, heard.range_m, heard.std_m);
+      const auto outcome = both.range(0, 1, received.own_z_m - received.sender_z_m, received.range_m, received.std_m);
       shift(both, 1, since_W);
       return outcome;
     });
   }
-  void saw(int vehicle, const Relative& seen) override {
+  void on_bearing(int vehicle, const Relative& seen) override {
     if (!vehicles_.contains(seen.other)) return;
     meet(vehicle, seen.other, [&](JointFilter& both) { return both.see(both.relative_row(0, 1, seen)); });
   }

@@ -20,9 +20,9 @@ class Naive final : public OwnFilterEstimator<Naive> {
     need_bytes(setup, "naive", position_bytes);
     OwnFilterEstimator::start(setup);
   }
-  void heard(const Heard& heard) override { hear_independent(heard); }
-  void saw(const Relative& seen) override { see_independent(seen); }
-  Bytes say(Time time, std::size_t) override { return payload_of(own_position(time)); }
+  void on_range(const ReceivedRange& received) override { add_independent_range(received); }
+  void on_bearing(const Relative& seen) override { add_independent_bearing(seen); }
+  Bytes make_payload(Time time, std::size_t) override { return payload_of(own_position(time)); }
 };
 
 SHOAL_ESTIMATOR("naive", Naive);

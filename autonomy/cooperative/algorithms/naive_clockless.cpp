@@ -19,11 +19,11 @@ class NaiveClockless final : public OwnFilterEstimator<NaiveClockless> {
       member.errors.clock_s = member.errors.clock_drift = member.errors.clock_walk_srts = 0;
     OwnFilterEstimator::start(without_clocks);
   }
-  void heard(const Heard& heard) override {
-    if (const auto sender = position_in(heard.payload))
-      filter_.range(own, *sender, heard.own_z_m - heard.sender_z_m, heard.range_m, heard.std_m);
+  void on_range(const ReceivedRange& received) override {
+    if (const auto sender = position_in(received.payload))
+      filter_.range(own, *sender, received.own_z_m - received.sender_z_m, received.range_m, received.std_m);
   }
-  Bytes say(Time time, std::size_t) override { return payload_of(own_position(time)); }
+  Bytes make_payload(Time time, std::size_t) override { return payload_of(own_position(time)); }
 };
 
 SHOAL_ESTIMATOR("naive_clockless", NaiveClockless);

@@ -17,17 +17,17 @@ class NaiveOfDeadReckoning final : public OwnFilterEstimator<NaiveOfDeadReckonin
     OwnFilterEstimator::start(setup);
     alone_ = filter_;
   }
-  void moved(Time time, const Vector2& v_W, const Matrix2& q) override {
-    OwnFilterEstimator::moved(time, v_W, q);
+  void predict(Time time, const Vector2& v_W, const Matrix2& q) override {
+    OwnFilterEstimator::predict(time, v_W, q);
     alone_.move(own, time, v_W, q);
   }
   void fix(Time time, const Vector2& p_W, double std_m) override {
     OwnFilterEstimator::fix(time, p_W, std_m);
     alone_.fix(own, p_W, std_m);
   }
-  void heard(const Heard& heard) override { hear_independent(heard); }
-  void saw(const Relative& seen) override { see_independent(seen); }
-  Bytes say(Time time, std::size_t) override {
+  void on_range(const ReceivedRange& received) override { add_independent_range(received); }
+  void on_bearing(const Relative& seen) override { add_independent_bearing(seen); }
+  Bytes make_payload(Time time, std::size_t) override {
     const Estimate estimate = alone_.now(own, time);
     return payload_of({estimate.p_W, estimate.P});
   }

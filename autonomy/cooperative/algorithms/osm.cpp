@@ -36,7 +36,7 @@ class OriginStateMethod final : public EstimatorOf<OriginStateMethod> {
     origin_ = alone_.copy(own);
     origin_noise_m2_ = std::pow(origin_noise_share * setup.position_std_m, 2);
   }
-  void moved(Time time, const Vector2& v_W, const Matrix2& q) override {
+  void predict(Time time, const Vector2& v_W, const Matrix2& q) override {
     chains_.filter().move(own, time, v_W, q);
     alone_.move(own, time, v_W, q);
   }
@@ -46,32 +46,33 @@ class OriginStateMethod final : public EstimatorOf<OriginStateMethod> {
     alone_.fix(own, p_W, std_m);
     independence_.fixed(setup_, before, alone_.covariance(own));
   }
-  void heard(const Heard& heard) override {
-    const double clock_m2 = sender_clock_variance_m2(setup_, heard.sender, heard.toa - setup_.time);
-    PayloadReader reader(heard.payload);
+  void on_range(const ReceivedRange& received) override {
+    const double clock_m2 = sender_clock_variance_m2(setup_, received.sender, received.toa - setup_.time);
+    PayloadReader reader(received.payload);
     if (reader.whole(1) == position_kind) {
       const auto sender = read_position(reader);
       if (sender)
-        chains_.filter().range(own, *sender, heard.own_z_m - heard.sender_z_m, heard.range_m, heard.std_m, clock_m2);
+        chains_.filter().range(own, *sender, received.own_z_m - received.sender_z_m, received.range_m, received.std_m,
+                               clock_m2);
       return;
     }
     const auto pair = read_pair(reader);
     if (!pair) return;
     const SenderChains before = chains_;
-    if (!chains_.knows(heard.sender)) {
-      chains_.begin(heard.sender, {pair->mean.tail<2>(), pair->covariance.bottomRightCorner<2, 2>()});
+    if (!chains_.knows(received.sender)) {
+      chains_.begin(received.sender, {pair->mean.tail<2>(), pair->covariance.bottomRightCorner<2, 2>()});
     } else {
-      const auto link = link_between(last_.at(heard.sender), *pair);
+      const auto link = link_between(last_.at(received.sender), *pair);
       if (!link) return;
-      chains_.advance(heard.sender, *link);
+      chains_.advance(received.sender, *link);
     }
-    chains_.range(heard, clock_m2);
+    chains_.range(received, clock_m2);
     if (chains_.is_sound())
-      last_[heard.sender] = *pair;
+      last_[received.sender] = *pair;
     else
       chains_ = before;
   }
-  Bytes say(Time, std::size_t max_bytes) override {
+  Bytes make_payload(Time, std::size_t max_bytes) override {
     Bytes payload;
     PayloadWriter writer(payload);
     const bool has_fixes = has_said_ && independence_.is_independent();

@@ -33,9 +33,9 @@ class ParticleStart final : public OwnFilterEstimator<ParticleStart> {
       particles_.push_back(setup.position_W + setup.position_std_m * Vector2(random_.gaussian(), random_.gaussian()));
     weights_.assign(count, 1.0 / count);
   }
-  void moved(Time time, const Vector2& v_W, const Matrix2& q) override {
+  void predict(Time time, const Vector2& v_W, const Matrix2& q) override {
     const double dt_s = seconds(time - filter_.time(own));
-    OwnFilterEstimator::moved(time, v_W, q);
+    OwnFilterEstimator::predict(time, v_W, q);
     if (particles_.empty() || !(dt_s > 0)) return;
     const double east_m = std::sqrt(q(0, 0) * dt_s), north_m = std::sqrt(q(1, 1) * dt_s);
     for (Vector2& p_W : particles_)
@@ -51,24 +51,24 @@ class ParticleStart final : public OwnFilterEstimator<ParticleStart> {
     }
     OwnFilterEstimator::fix(time, p_W, std_m);
   }
-  void heard(const Heard& heard) override {
-    const auto sender = position_in(heard.payload);
+  void on_range(const ReceivedRange& received) override {
+    const auto sender = position_in(received.payload);
     if (!sender) return;
-    const double dz_m = heard.own_z_m - heard.sender_z_m;
-    const double clock_m2 = sender_clock_variance_m2(setup_, heard.sender, heard.toa - setup_.time);
+    const double dz_m = received.own_z_m - received.sender_z_m;
+    const double clock_m2 = sender_clock_variance_m2(setup_, received.sender, received.toa - setup_.time);
     if (particles_.empty()) {
-      filter_.range(own, *sender, dz_m, heard.range_m, heard.std_m, clock_m2);
+      filter_.range(own, *sender, dz_m, received.range_m, received.std_m, clock_m2);
       return;
     }
     const double own_clock_m = setup_.sound_speed_mps * setup_.errors().clock_s;
-    const double R = heard.std_m * heard.std_m + clock_m2 + own_clock_m * own_clock_m;
-    if (!has_heard_) place_on_ring(*sender, heard.range_m, dz_m, std::sqrt(R));
-    has_heard_ = true;
-    weigh(*sender, heard.range_m, dz_m, R);
+    const double R = received.std_m * received.std_m + clock_m2 + own_clock_m * own_clock_m;
+    if (!has_received_) place_on_ring(*sender, received.range_m, dz_m, std::sqrt(R));
+    has_received_ = true;
+    weigh(*sender, received.range_m, dz_m, R);
     resample();
     summarize(true);
   }
-  Bytes say(Time time, std::size_t) override { return payload_of(own_position(time)); }
+  Bytes make_payload(Time time, std::size_t) override { return payload_of(own_position(time)); }
 
  private:
   void place_on_ring(const Position& sender, double range_m, double dz_m, double std_m) {
@@ -141,7 +141,7 @@ class ParticleStart final : public OwnFilterEstimator<ParticleStart> {
   sim::Random random_{1, "pf"};
   std::vector<Vector2> particles_;  ///< empty: the filter is alone
   std::vector<double> weights_;
-  bool has_heard_ = false;
+  bool has_received_ = false;
 };
 
 SHOAL_ESTIMATOR("pf", ParticleStart);

@@ -31,7 +31,7 @@ class SplitCovarianceIntersection final : public EstimatorOf<SplitCovarianceInte
     total_.add(setup.errors(), setup.time, setup.position_W, setup.position_std_m);
     Pd_ = Eigen::MatrixXd::Zero(total_.size(), total_.size());
   }
-  void moved(Time time, const Vector2& v_W, const Matrix2& q) override {
+  void predict(Time time, const Vector2& v_W, const Matrix2& q) override {
     const Eigen::MatrixXd F = total_.jacobian(own, time, v_W);
     total_.move(own, time, v_W, q);
     Pd_ = (F * Pd_ * F.transpose()).eval();
@@ -41,17 +41,17 @@ class SplitCovarianceIntersection final : public EstimatorOf<SplitCovarianceInte
     if (total_.fix(own, p_W, std_m, &A) == JointFilter::Outcome::refused) return;
     Pd_ = (A * Pd_ * A.transpose()).eval();
   }
-  void heard(const Heard& heard) override {
-    PayloadReader reader(heard.payload);
+  void on_range(const ReceivedRange& received) override {
+    PayloadReader reader(received.payload);
     const auto sender = read_position(reader);
     const auto sender_independent = read_covariance(reader);
     if (!sender || !sender_independent) return;
-    const JointFilter::RangeRow row = total_.range_row(own, *sender, heard.own_z_m - heard.sender_z_m);
-    const double R = heard.std_m * heard.std_m + row.bend_variance_m2 +
-                     sender_clock_variance_m2(setup_, heard.sender, heard.toa - setup_.time);
+    const JointFilter::RangeRow row = total_.range_row(own, *sender, received.own_z_m - received.sender_z_m);
+    const double R = received.std_m * received.std_m + row.bend_variance_m2 +
+                     sender_clock_variance_m2(setup_, received.sender, received.toa - setup_.time);
     const double b = row.u.dot(sender->P * row.u);
     const double bi = std::min(b, row.u.dot(*sender_independent * row.u));
-    const double innovation_m = heard.range_m - row.predicted_m;
+    const double innovation_m = received.range_m - row.predicted_m;
     const double a = row.H.dot(total_.P() * row.H);
     if (!std::isfinite(innovation_m) || !total_.within_gate(innovation_m, a + b + R)) return;
     const Eigen::MatrixXd Pi = total_.P() - Pd_;
@@ -72,7 +72,7 @@ class SplitCovarianceIntersection final : public EstimatorOf<SplitCovarianceInte
     total_.set_x(total_.x() + K * innovation_m);
     total_.set_P(Pi_after + Pd_);
   }
-  Bytes say(Time time, std::size_t) override {
+  Bytes make_payload(Time time, std::size_t) override {
     const Estimate estimate = total_.now(own, time);
     Bytes payload = payload_of({estimate.p_W, estimate.P});
     PayloadWriter writer(payload);

@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint64_t frame_mark = 78;
 constexpr Time cycle_ms = 65536;
 constexpr std::size_t payload_length_at = 7;
-constexpr std::size_t sight_bytes = 9;
+constexpr std::size_t relative_bytes = 9;
 constexpr double displacement_step_m = 0.01;
 
 /// Rounds towards minus infinity.
@@ -46,13 +46,13 @@ Bytes encode_frame(const NavFrame& frame, std::size_t frame_bytes) {
   writer.whole(frame.payload.size(), 1);
   bytes.insert(bytes.end(), frame.payload.begin(), frame.payload.end());
   const std::size_t left = room - frame.payload.size();
-  const std::size_t sights = left == 0 ? 0 : std::min(frame.sights.size(), (left - 1) / sight_bytes);
-  if (sights > 0) {
-    writer.whole(sights, 1);
-    for (const NavFrame::Sight& sight : std::span(frame.sights).first(sights)) {
-      writer.whole(static_cast<std::uint64_t>(sight.other), 1);
-      writer.whole(static_cast<std::uint64_t>(std::max<Time>(milliseconds_of(sight.age), 0)), 2);
-      for (const double d_m : sight.d_W) writer.fixed(d_m, displacement_step_m, 3);
+  const std::size_t relatives = left == 0 ? 0 : std::min(frame.relatives.size(), (left - 1) / relative_bytes);
+  if (relatives > 0) {
+    writer.whole(relatives, 1);
+    for (const NavFrame::RelativePosition& relative : std::span(frame.relatives).first(relatives)) {
+      writer.whole(static_cast<std::uint64_t>(relative.other), 1);
+      writer.whole(static_cast<std::uint64_t>(std::max<Time>(milliseconds_of(relative.age), 0)), 2);
+      for (const double d_m : relative.d_W) writer.fixed(d_m, displacement_step_m, 3);
     }
   }
   bytes.resize(frame_bytes - 2);
@@ -85,14 +85,14 @@ std::optional<NavFrame> decode_frame(std::span<const std::uint8_t> bytes, Time t
   const auto payload = bytes.subspan(frame_overhead_bytes - 2, size);
   frame.payload.assign(payload.begin(), payload.end());
   PayloadReader rest(bytes.subspan(frame_overhead_bytes - 2 + size, payload_room(bytes.size()) - size));
-  const std::uint64_t sights = rest.whole(1);
-  for (std::uint64_t i = 0; i < sights; ++i) {
-    NavFrame::Sight sight;
-    sight.other = static_cast<int>(rest.whole(1));
-    sight.age = 1000 * static_cast<Time>(rest.whole(2));
-    for (double& d_m : sight.d_W) d_m = rest.fixed(displacement_step_m, 3);
+  const std::uint64_t relatives = rest.whole(1);
+  for (std::uint64_t i = 0; i < relatives; ++i) {
+    NavFrame::RelativePosition relative;
+    relative.other = static_cast<int>(rest.whole(1));
+    relative.age = 1000 * static_cast<Time>(rest.whole(2));
+    for (double& d_m : relative.d_W) d_m = rest.fixed(displacement_step_m, 3);
     if (!rest.ok()) return std::nullopt;
-    frame.sights.push_back(sight);
+    frame.relatives.push_back(relative);
   }
   return frame;
 }

@@ -23,7 +23,7 @@ NavPilot::NavPilot(std::shared_ptr<const NavTeam> team, const Params& params,
 
 void NavPilot::receive(const shoal::acoustic_received_t& packet) {
   ++counts_.frames;
-  navigation_.heard(packet, packet.data);
+  navigation_.on_range(packet, packet.data);
 }
 
 NavPilot::Decision NavPilot::step() {
@@ -41,7 +41,7 @@ NavPilot::Decision NavPilot::step() {
   if (!access_.take_turn(decision.estimate->utime)) return decision;
   decision.send.emplace();
   decision.send->utime = decision.estimate->utime;
-  decision.send->data = *navigation_.say();
+  decision.send->data = *navigation_.make_payload();
   decision.send->size = static_cast<std::int32_t>(decision.send->data.size());
   ++counts_.sent;
   return decision;

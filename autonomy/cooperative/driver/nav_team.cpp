@@ -83,7 +83,7 @@ void add_usbl(const devices::Usbl::Params& usbl, NavVehicle& vehicle) {
 }
 
 /// A craft without DVL moves by the velocity of its fixes, which its heading does not turn: the lasting errors of the
-/// heading are in its sights only.
+/// heading are in its relative measurements only.
 void without_heading_states(NavVehicle& vehicle) {
   vehicle.usbl_errors.heading_std_rad =
       std::hypot(vehicle.usbl_errors.heading_std_rad, vehicle.errors.heading_bias_rad, vehicle.errors.slow_heading_rad);

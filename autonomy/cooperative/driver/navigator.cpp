@@ -41,7 +41,7 @@ void Navigator::settle() {
   while (seconds(recent_.back().time - recent_.front().time) > window_s) {
     if (applied_ == 0) catch_up();
     apply(settled_, 0, settled_to_);
-    if (recent_.front().kind == NavEvent::Kind::moved) last_moved_ = recent_.front();
+    if (recent_.front().kind == NavEvent::Kind::motion) last_moved_ = recent_.front();
     recent_.pop_front();
     --applied_;
   }
@@ -57,50 +57,50 @@ void Navigator::apply(OwnedEstimator& estimator, std::size_t index, Time& moved_
   if (event.time > moved_to) {
     // The motion until then is that of the report which follows, or of the last one.
     const auto next = std::find_if(recent_.begin() + static_cast<std::ptrdiff_t>(index), recent_.end(),
-                                   [](const NavEvent& each) { return each.kind == Kind::moved; });
+                                   [](const NavEvent& each) { return each.kind == Kind::motion; });
     const NavEvent* moved = next != recent_.end() ? &*next : nullptr;
     for (std::size_t before = index; moved == nullptr && before > 0; --before)
-      if (recent_[before - 1].kind == Kind::moved) moved = &recent_[before - 1];
+      if (recent_[before - 1].kind == Kind::motion) moved = &recent_[before - 1];
     if (moved == nullptr) moved = &last_moved_;
-    estimator->moved(event.time, moved->v_W, moved->q);
+    estimator->predict(event.time, moved->v_W, moved->q);
     moved_to = event.time;
   }
   switch (event.kind) {
-    case Kind::moved:
+    case Kind::motion:
       break;
     case Kind::fix:
       estimator->fix(event.time, event.p_W, event.std_m);
       break;
-    case Kind::heard: {
-      Heard heard = event.heard;
-      heard.payload = event.payload;
-      estimator->heard(heard);
+    case Kind::received: {
+      ReceivedRange received = event.received;
+      received.payload = event.payload;
+      estimator->on_range(received);
       break;
     }
-    case Kind::saw: {
+    case Kind::bearing: {
       Relative seen = event.seen;
       seen.payload = event.payload;
-      estimator->saw(seen);
+      estimator->on_bearing(seen);
       break;
     }
-    case Kind::say: {
-      Bytes answer = estimator->say(event.time, event.max_bytes);
+    case Kind::payload: {
+      Bytes answer = estimator->make_payload(event.time, event.max_bytes);
       if (payload != nullptr) *payload = std::move(answer);
       break;
     }
   }
 }
 
-Bytes Navigator::say(Time time, std::size_t max_bytes) {
+Bytes Navigator::make_payload(Time time, std::size_t max_bytes) {
   NavEvent event;
-  event.kind = NavEvent::Kind::say;
+  event.kind = NavEvent::Kind::payload;
   event.time = time;
   event.max_bytes = max_bytes;
   if (!add(std::move(event))) return {};
   // All events before it, and then itself: none is later.
   Bytes payload;
   while (applied_ + 1 < recent_.size()) apply(ahead_, applied_++, ahead_to_);
-  if (recent_.back().kind == NavEvent::Kind::say && recent_.back().time == time) {
+  if (recent_.back().kind == NavEvent::Kind::payload && recent_.back().time == time) {
     apply(ahead_, applied_, ahead_to_, &payload);
     ++applied_;
   }

@@ -31,15 +31,15 @@ class OwnedEstimator {
 
 /// What happened to a vehicle, by its own clock.
 struct NavEvent {
-  enum class Kind { moved, fix, heard, saw, say };
+  enum class Kind { motion, fix, received, bearing, payload };
 
-  Kind kind = Kind::moved;
+  Kind kind = Kind::motion;
   Time time = 0;
   Vector2 v_W = Vector2::Zero();  ///< moved
   Matrix2 q = Matrix2::Zero();    ///< moved
   Vector2 p_W = Vector2::Zero();  ///< fix
   double std_m = 1;               ///< fix
-  Heard heard;                    ///< without its payload
+  ReceivedRange received;         ///< without its payload
   Relative seen;                  ///< without its payload
   Bytes payload;                  ///< of the frame
   std::size_t max_bytes = 0;      ///< say
@@ -60,7 +60,7 @@ class Navigator {
   /// Adds an event.  Returns false, with no effect, when it is older than window_s.
   bool add(NavEvent event);
   /// Returns the payload of a frame that is transmitted at `time`.
-  Bytes say(Time time, std::size_t max_bytes);
+  Bytes make_payload(Time time, std::size_t max_bytes);
   /// Returns the estimate at a time, by the last velocity if that is after the last motion.
   Estimate now(Time time);
   int dropped() const { return dropped_; }

@@ -66,14 +66,14 @@ class OwnRun {
   template <class Message>
   void add(int index, VehicleNavigation& vehicle, const Message& message) {
     if constexpr (std::is_same_v<Message, shoal::modem_send_t>) {
-      auto frame = vehicle.say();
+      auto frame = vehicle.make_payload();
       if (!frame) return;
       ++run_.frames_said;
       run_.payload_bytes[static_cast<std::size_t>(index)] += payload_length(*frame);
       frames_.add(index, message.data, std::move(*frame));
     } else if constexpr (std::is_same_v<Message, shoal::acoustic_received_t>) {
       if (const auto sender = record_.team->index_of(message.source))
-        vehicle.heard(message, frames_.find(*sender, message.data));
+        vehicle.on_range(message, frames_.find(*sender, message.data));
     } else {
       vehicle.receive(message);
     }
@@ -129,7 +129,7 @@ class TeamRun {
     } else if constexpr (std::is_same_v<Message, shoal::acoustic_received_t>) {
       const auto sender = record_.team->index_of(message.source);
       const auto frame = sender ? decode_frame(frames_.find(*sender, message.data), message.sent_utime) : std::nullopt;
-      const auto event = frame ? reports.heard(message, *frame) : std::nullopt;
+      const auto event = frame ? reports.range_event(message, *frame) : std::nullopt;
       if (!event) return;
       ++run_.ranges;
       team_.add(index, *event);

@@ -12,7 +12,7 @@ void TeamNavigator::start(int vehicle, const Setup& setup) {
 
 void TeamNavigator::add(int vehicle, const NavEvent& event) {
   Time order = event.time;
-  if (event.kind == NavEvent::Kind::heard) order = std::max(order, event.heard.payload_time + 1);
+  if (event.kind == NavEvent::Kind::received) order = std::max(order, event.received.payload_time + 1);
   calls_.push_back({.vehicle = vehicle, .time = event.time, .order = order, .event = event});
 }
 
@@ -35,12 +35,12 @@ void TeamNavigator::run(TeamEstimator& estimator) {
   // The motion of each vehicle that follows a call, from the end back; at the end that before.
   std::vector<const NavEvent*> motion(vehicles_, nullptr);
   const auto is_motion = [](const Call& call) {
-    return call.kind == Call::Kind::event && call.event.kind == NavEvent::Kind::moved;
+    return call.kind == Call::Kind::event && call.event.kind == NavEvent::Kind::motion;
   };
   for (const Call& call : calls_)
     if (is_motion(call)) motion[static_cast<std::size_t>(call.vehicle)] = &call.event;
   const auto is_sight = [](const Call& call) {
-    return call.kind == Call::Kind::event && call.event.kind == NavEvent::Kind::saw;
+    return call.kind == Call::Kind::event && call.event.kind == NavEvent::Kind::bearing;
   };
   std::vector<const NavEvent*> next(calls_.size()), next_of_seen(calls_.size(), nullptr);
   for (std::size_t i = calls_.size(); i-- > 0;) {
@@ -64,7 +64,7 @@ void TeamNavigator::run(TeamEstimator& estimator) {
     const auto move = [&](int moving, const NavEvent* by) {
       Time& to = moved_to[static_cast<std::size_t>(moving)];
       if (by == nullptr || !started[static_cast<std::size_t>(moving)] || each.time <= to) return;
-      estimator.moved(moving, each.time, by->v_W, by->q);
+      estimator.predict(moving, each.time, by->v_W, by->q);
       to = each.time;
     };
     if (each.kind != Call::Kind::query) move(each.vehicle, next[i]);
@@ -86,17 +86,17 @@ void TeamNavigator::call(const Call& each, TeamEstimator& estimator) {
       break;
     case Call::Kind::event:
       switch (each.event.kind) {
-        case NavEvent::Kind::moved:
-        case NavEvent::Kind::say:
+        case NavEvent::Kind::motion:
+        case NavEvent::Kind::payload:
           break;
         case NavEvent::Kind::fix:
           estimator.fix(each.vehicle, each.time, each.event.p_W, each.event.std_m);
           break;
-        case NavEvent::Kind::heard:
-          estimator.heard(each.vehicle, each.event.heard);
+        case NavEvent::Kind::received:
+          estimator.on_range(each.vehicle, each.event.received);
           break;
-        case NavEvent::Kind::saw:
-          estimator.saw(each.vehicle, each.event.seen);
+        case NavEvent::Kind::bearing:
+          estimator.on_bearing(each.vehicle, each.event.seen);
           break;
       }
   }

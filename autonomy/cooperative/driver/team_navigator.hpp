@@ -17,7 +17,7 @@ class TeamNavigator {
 
   void start(int vehicle, const Setup& setup);
   void add(int vehicle, const NavEvent& event);
-  /// A frame is transmitted at `time`, which is Heard::payload_time for its receivers.
+  /// A frame is transmitted at `time`, which is ReceivedRange::payload_time for its receivers.
   void sent(int vehicle, Time time, Time frame_time);
   /// Asks for the estimate at a time.
   void query(int vehicle, Time time, std::function<void(const Estimate&)> answer);

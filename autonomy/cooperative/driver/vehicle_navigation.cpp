@@ -28,19 +28,19 @@ Setup VehicleNavigation::setup() const {
   return completed(*reports_.setup(), options_);
 }
 
-void VehicleNavigation::heard(const shoal::acoustic_received_t& packet, const Bytes& frame) {
+void VehicleNavigation::on_range(const shoal::acoustic_received_t& packet, const Bytes& frame) {
   const auto decoded = decode_frame(frame, packet.sent_utime);
   if (!navigator_ || !decoded) return;
-  if (const auto seen = reports_.seen_by(packet, *decoded)) navigator_->add(*seen);
-  const auto event = reports_.heard(packet, *decoded);
+  if (const auto seen = reports_.bearing_by(packet, *decoded)) navigator_->add(*seen);
+  const auto event = reports_.range_event(packet, *decoded);
   if (event && navigator_->add(*event)) ++ranges_;
 }
 
-std::optional<Bytes> VehicleNavigation::say() {
+std::optional<Bytes> VehicleNavigation::make_payload() {
   if (!navigator_) return std::nullopt;
   const Time time = reports_.transmission();
   const std::size_t room = payload_room(options_.frame_bytes);
-  Bytes payload = navigator_->say(time, room);
+  Bytes payload = navigator_->make_payload(time, room);
   if (payload.size() > room)
     throw std::invalid_argument(algorithm_->name + " said " + std::to_string(payload.size()) +
                                 " bytes, its frames have room for " + std::to_string(room));

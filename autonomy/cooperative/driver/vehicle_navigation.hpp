@@ -34,9 +34,9 @@ class VehicleNavigation {
     for (const NavEvent& event : events) navigator_->add(event);
   }
   /// Processes a packet with a frame, which in a record differs from that in the packet.
-  void heard(const shoal::acoustic_received_t& packet, const Bytes& frame);
+  void on_range(const shoal::acoustic_received_t& packet, const Bytes& frame);
   /// Returns the frame to transmit now; nothing before the start.
-  std::optional<Bytes> say();
+  std::optional<Bytes> make_payload();
   /// Returns the estimate of the modem's position; nothing before the start.
   std::optional<Estimate> estimate();
   /// Returns the message of an estimate, for the origin of the vehicle.

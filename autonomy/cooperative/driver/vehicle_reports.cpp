@@ -21,11 +21,11 @@ constexpr double through_water_density = 0.09;
 constexpr double max_late_s = 0.3;
 constexpr double max_travel_s = 60;
 constexpr double pressure_std_m = 0.1;
-/// An older sight is not sent.
-constexpr double max_sight_age_s = 5;
-/// A sight by a clock that is further ahead of the own one is not used.
+/// An older relative measurement is not sent.
+constexpr double max_relative_age_s = 5;
+/// A relative measurement by a clock that is further ahead of the own one is not used.
 constexpr double max_ahead_s = 1;
-/// Times of sights in frames have milliseconds: one that was sent again differs by less than this.
+/// Times of relative measurements in frames have milliseconds: one that was sent again differs by less than this.
 constexpr double same_sight_s = 0.01;
 
 Time microseconds(double time_s) {
@@ -59,7 +59,7 @@ void VehicleReports::begin(Time time, const Vector2& modem_W, double std_m) {
   moved_to_ = time;
 }
 
-NavEvent VehicleReports::moved(Time time, const Vector2& v_W, const Matrix2& q, const Eigen::Vector3d& point_B) {
+NavEvent VehicleReports::motion_event(Time time, const Vector2& v_W, const Matrix2& q, const Eigen::Vector3d& point_B) {
   NavEvent event;
   event.time = time;
   event.q = q;
@@ -101,7 +101,7 @@ std::vector<NavEvent> VehicleReports::receive(const shoal::dvl_t& dvl) {
   const Vector2 left_W(-v_W.y(), v_W.x());
   const Matrix2 q = density * Matrix2::Identity() +
                     own.heading_white_rad * own.heading_white_rad * dt_s * (left_W * left_W.transpose());
-  return {moved(time, v_W, q, own.dvl->X_BS.translation())};
+  return {motion_event(time, v_W, q, own.dvl->X_BS.translation())};
 }
 
 std::vector<NavEvent> VehicleReports::receive(const shoal::ins_t& attitude) {
@@ -149,7 +149,7 @@ std::vector<NavEvent> VehicleReports::receive(const shoal::gps_data_t& fix) {
   if (!by_dvl && std::isfinite(fix.speed) && std::isfinite(fix.heading)) {
     const double course_rad = 0.5 * std::numbers::pi - fix.heading;
     const Vector2 v_W = fix.speed * Vector2(std::cos(course_rad), std::sin(course_rad));
-    events.push_back(moved(time, v_W, own.velocity_density * Matrix2::Identity(), antenna_B));
+    events.push_back(motion_event(time, v_W, own.velocity_density * Matrix2::Identity(), antenna_B));
   }
   NavEvent event;
   event.kind = NavEvent::Kind::fix;
@@ -160,7 +160,7 @@ std::vector<NavEvent> VehicleReports::receive(const shoal::gps_data_t& fix) {
   return events;
 }
 
-Relative VehicleReports::sight_of(const NavVehicle& observer, const Eigen::Vector3d& d_W) {
+Relative VehicleReports::relative_of(const NavVehicle& observer, const Eigen::Vector3d& d_W) {
   const double level_m = d_W.head<2>().norm();
   Relative seen;
   seen.range_m = level_m;
@@ -175,19 +175,19 @@ Relative VehicleReports::sight_of(const NavVehicle& observer, const Eigen::Vecto
   return seen;
 }
 
-std::vector<NavEvent> VehicleReports::receive(const shoal::usbl_t& sight) {
-  const Time time = note_time(sight.utime);
-  const Eigen::Vector3d p_S(sight.position_m[0], sight.position_m[1], sight.position_m[2]);
+std::vector<NavEvent> VehicleReports::receive(const shoal::usbl_t& relative) {
+  const Time time = note_time(relative.utime);
+  const Eigen::Vector3d p_S(relative.position_m[0], relative.position_m[1], relative.position_m[2]);
   // A transponder is VEHICLE/DEVICE.
-  const auto other = team_->index_of(sight.target.substr(0, sight.target.find('/')));
+  const auto other = team_->index_of(relative.target.substr(0, relative.target.find('/')));
   if (!setup_ || !has_heading_ || !other || *other == own_ || !p_S.allFinite()) return {};
   const NavVehicle& own = own_vehicle();
   const Eigen::Vector3d d_W = lever_W(own.usbl->X_BS * p_S - own.modem->X_BS.translation());
-  sights_[*other] = {time, d_W.head<2>()};
+  relatives_[*other] = {time, d_W.head<2>()};
   NavEvent event;
-  event.kind = NavEvent::Kind::saw;
+  event.kind = NavEvent::Kind::bearing;
   event.time = time;
-  event.seen = sight_of(own, d_W);
+  event.seen = relative_of(own, d_W);
   event.seen.time = time;
   event.seen.other = *other;
   return {event};
@@ -200,21 +200,21 @@ bool VehicleReports::is_from_sender(const shoal::acoustic_received_t& packet, co
          std::abs(seconds(packet.sent_utime - frame.payload_time)) <= max_late_s;
 }
 
-std::optional<NavEvent> VehicleReports::seen_by(const shoal::acoustic_received_t& packet, const NavFrame& frame) {
-  const auto sight = std::find_if(frame.sights.begin(), frame.sights.end(),
-                                  [this](const NavFrame::Sight& each) { return each.other == own_; });
-  if (!is_from_sender(packet, frame) || sight == frame.sights.end()) return std::nullopt;
+std::optional<NavEvent> VehicleReports::bearing_by(const shoal::acoustic_received_t& packet, const NavFrame& frame) {
+  const auto relative = std::find_if(frame.relatives.begin(), frame.relatives.end(),
+                                     [this](const NavFrame::RelativePosition& each) { return each.other == own_; });
+  if (!is_from_sender(packet, frame) || relative == frame.relatives.end()) return std::nullopt;
   const NavVehicle& observer = team_->vehicles[static_cast<std::size_t>(frame.sender)];
   NavEvent event;
-  event.kind = NavEvent::Kind::saw;
-  event.time = frame.payload_time - sight->age + offset_;
+  event.kind = NavEvent::Kind::bearing;
+  event.time = frame.payload_time - relative->age + offset_;
   // Its time is by the clock of the sender, which may be wrong by hours.
   const double before_arrival_s = seconds(packet.utime + offset_ - event.time);
-  if (!(before_arrival_s >= -max_ahead_s && before_arrival_s <= max_travel_s + max_sight_age_s)) return std::nullopt;
+  if (!(before_arrival_s >= -max_ahead_s && before_arrival_s <= max_travel_s + max_relative_age_s)) return std::nullopt;
   const auto before = seen_at_.find(frame.sender);
   if (before != seen_at_.end() && seconds(event.time - before->second) < same_sight_s) return std::nullopt;
   seen_at_[frame.sender] = event.time;
-  event.seen = sight_of(observer, {-sight->d_W.x(), -sight->d_W.y(), modem_depth_m() - frame.depth_m});
+  event.seen = relative_of(observer, {-relative->d_W.x(), -relative->d_W.y(), modem_depth_m() - frame.depth_m});
   event.seen.time = event.time;
   event.seen.other = frame.sender;
   event.seen.by_other = true;
@@ -226,21 +226,21 @@ std::optional<NavEvent> VehicleReports::seen_by(const shoal::acoustic_received_t
   return event;
 }
 
-std::optional<NavEvent> VehicleReports::heard(const shoal::acoustic_received_t& packet, const NavFrame& frame) {
+std::optional<NavEvent> VehicleReports::range_event(const shoal::acoustic_received_t& packet, const NavFrame& frame) {
   if (!is_from_sender(packet, frame) || !(std::abs(packet.travel_time_s) < max_travel_s)) return std::nullopt;
   const auto range_m = team_->sound.range_m(sound_, packet.travel_time_s, modem_depth_m(), frame.depth_m);
   if (!range_m) return std::nullopt;
   NavEvent event;
-  event.kind = NavEvent::Kind::heard;
+  event.kind = NavEvent::Kind::received;
   event.time = packet.utime + offset_;
-  event.heard.toa = event.time;
-  event.heard.tol = packet.sent_utime;
-  event.heard.sender = frame.sender;
-  event.heard.range_m = *range_m;
-  event.heard.std_m = range_std_m(frame.sender, *range_m, frame.depth_m);
-  event.heard.own_z_m = -modem_depth_m();
-  event.heard.sender_z_m = -frame.depth_m;
-  event.heard.payload_time = frame.payload_time;
+  event.received.toa = event.time;
+  event.received.tol = packet.sent_utime;
+  event.received.sender = frame.sender;
+  event.received.range_m = *range_m;
+  event.received.std_m = range_std_m(frame.sender, *range_m, frame.depth_m);
+  event.received.own_z_m = -modem_depth_m();
+  event.received.sender_z_m = -frame.depth_m;
+  event.received.payload_time = frame.payload_time;
   event.payload = frame.payload;
   return event;
 }
@@ -266,9 +266,9 @@ double VehicleReports::modem_depth_m() const {
 
 NavFrame VehicleReports::frame(Time time, Bytes payload) const {
   NavFrame frame{own_, time - offset_, modem_depth_m(), std::move(payload)};
-  for (const auto& [other, sight] : sights_)
-    if (const double age_s = seconds(time - sight.time); age_s >= 0 && age_s <= max_sight_age_s)
-      frame.sights.push_back({other, time - sight.time, sight.d_W - age_s * v_W_});
+  for (const auto& [other, relative] : relatives_)
+    if (const double age_s = seconds(time - relative.time); age_s >= 0 && age_s <= max_relative_age_s)
+      frame.relatives.push_back({other, time - relative.time, relative.d_W - age_s * v_W_});
   return frame;
 }
 

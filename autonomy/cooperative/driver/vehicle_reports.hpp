@@ -40,15 +40,15 @@ class VehicleReports {
   std::vector<NavEvent> receive(const shoal::compass_t& compass);
   std::vector<NavEvent> receive(const shoal::pressure_t& pressure);
   std::vector<NavEvent> receive(const shoal::gps_data_t& fix);
-  /// A sight of another vehicle, without payload.  The next frame() has it, too.
-  std::vector<NavEvent> receive(const shoal::usbl_t& sight);
+  /// A relative measurement of another vehicle, without payload.  The next frame() has it, too.
+  std::vector<NavEvent> receive(const shoal::usbl_t& relative);
   /// Returns the sound of a packet whose frame is `frame`; nothing when it is not a range to its sender.  The error of
   /// the range has the stamps of both clocks and the depths of both, and is at least min_range_std_m.
-  std::optional<NavEvent> heard(const shoal::acoustic_received_t& packet, const NavFrame& frame);
+  std::optional<NavEvent> range_event(const shoal::acoustic_received_t& packet, const NavFrame& frame);
 
-  /// Returns the sight of this vehicle by the sender, in a frame that it received, at the time of the sight and with
-  /// the payload of the frame; nothing when the frame has none that is new.
-  std::optional<NavEvent> seen_by(const shoal::acoustic_received_t& packet, const NavFrame& frame);
+  /// Returns the relative measurement of this vehicle by the sender, in a frame that it received, at the time of the
+  /// relative measurement and with the payload of the frame; nothing when the frame has none that is new.
+  std::optional<NavEvent> bearing_by(const shoal::acoustic_received_t& packet, const NavFrame& frame);
 
   /// The sender's position is that of its newest stamp before the transmission, up to some hundredths of a second
   /// before.
@@ -61,7 +61,7 @@ class VehicleReports {
   /// Time at which a frame that is given to the modem now is transmitted.
   Time transmission() const;
   double modem_depth_m() const;
-  /// Frame of this vehicle with a payload that was said for transmission(), and with its newest sights.
+  /// Frame of this vehicle with a payload that was said for transmission(), and with its newest relative measurements.
   NavFrame frame(Time time, Bytes payload) const;
   /// Message of an estimate, for the origin of the vehicle.
   shoal::estimate_t message(const Estimate& estimate) const;
@@ -71,12 +71,12 @@ class VehicleReports {
   void begin(Time time, const Vector2& modem_W, double std_m);
   /// Position of a device relative to another point of the vehicle, in the axes of the world.
   Eigen::Vector3d lever_W(const Eigen::Vector3d& point_B) const { return q_WB_ * point_B; }
-  NavEvent moved(Time time, const Vector2& v_W, const Matrix2& q, const Eigen::Vector3d& point_B);
+  NavEvent motion_event(Time time, const Vector2& v_W, const Matrix2& q, const Eigen::Vector3d& point_B);
   double range_std_m(int sender, double range_m, double sender_depth_m) const;
   /// Whether a frame is one that its sender transmitted when it planned to.
   bool is_from_sender(const shoal::acoustic_received_t& packet, const NavFrame& frame) const;
-  /// Returns a sight by a vehicle, with its white errors, of which a displacement is known.
-  static Relative sight_of(const NavVehicle& observer, const Eigen::Vector3d& d_W);
+  /// Returns a relative measurement by a vehicle, with its white errors, of which a displacement is known.
+  static Relative relative_of(const NavVehicle& observer, const Eigen::Vector3d& d_W);
 
   const NavVehicle& own_vehicle() const { return team_->vehicles[static_cast<std::size_t>(own_)]; }
 
@@ -95,12 +95,12 @@ class VehicleReports {
   std::optional<Time> moved_to_;
   Vector2 lever_then_W_ = Vector2::Zero();
   double depth_m_ = 0;  ///< of the origin of the vehicle
-  struct Sight {
+  struct RelativePosition {
     Time time = 0;
     Vector2 d_W = Vector2::Zero();  ///< between the modems
   };
-  std::map<int, Sight> sights_;  ///< newest of each other vehicle
-  std::map<int, Time> seen_at_;  ///< newest sight by each other vehicle
+  std::map<int, RelativePosition> relatives_;  ///< newest of each other vehicle
+  std::map<int, Time> seen_at_;                ///< newest relative measurement by each other vehicle
 };
 
 }  // namespace navigation

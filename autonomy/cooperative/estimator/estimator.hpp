@@ -21,7 +21,7 @@ class EstimatorFailure : public std::invalid_argument {
 };
 
 /// Frame that arrived by sound, with its one-way range.
-struct Heard {
+struct ReceivedRange {
   Time toa = 0;           ///< arrival, by the own clock
   Time tol = 0;           ///< transmission, by the clock of the sender
   int sender = 0;         ///< index in Setup::team
@@ -29,8 +29,8 @@ struct Heard {
   double std_m = 1;       ///< white error of the range
   double own_z_m = 0;     ///< height of the own modem, from pressure; 0 at the surface
   double sender_z_m = 0;  ///< of the sender's modem
-  Time payload_time = 0;  ///< time for which the sender's say() was called, near `tol`
-  std::span<const std::uint8_t> payload;  ///< what say() of the sender returned
+  Time payload_time = 0;  ///< time for which the sender's make_payload() was called, near `tol`
+  std::span<const std::uint8_t> payload;  ///< what make_payload() of the sender returned
 };
 
 /// Measurement of another vehicle by a sensor on the own one, or of the own one by a sensor on the other.
@@ -67,15 +67,15 @@ class Estimator {
   virtual void start(const Setup& setup) = 0;
   /// The vehicle moved with this measured velocity since the last call, until `time`.  `q`: white noise of the
   /// displacement, m^2/s.  Both are in east and north by the measured heading: an error of the heading turns both.
-  virtual void moved(Time time, const Vector2& v_W, const Matrix2& q) = 0;
+  virtual void predict(Time time, const Vector2& v_W, const Matrix2& q) = 0;
   /// Satellite position; `std_m`: white error of each coordinate.
   virtual void fix(Time time, const Vector2& p_W, double std_m) = 0;
-  /// A frame arrived.  moved() was called for its time of arrival.  The payload may be that of any program.
-  virtual void heard(const Heard& heard) = 0;
+  /// A frame arrived.  predict() was called for its time of arrival.  The payload may be that of any program.
+  virtual void on_range(const ReceivedRange& received) = 0;
   /// A sensor measured another vehicle, or that one the own vehicle.  An algorithm without it does not work on land.
-  virtual void saw(const Relative&) {}
-  /// Returns the payload of a frame that is transmitted at `time`, for which moved() was called: at most `max_bytes`.
-  virtual Bytes say(Time time, std::size_t max_bytes) = 0;
+  virtual void on_bearing(const Relative&) {}
+  /// Returns the payload of a frame that is transmitted at `time`, for which predict() was called: at most `max_bytes`.
+  virtual Bytes make_payload(Time time, std::size_t max_bytes) = 0;
   /// Returns the estimate at a time shortly after the last call, by the last velocity.
   virtual Estimate now(Time time) const = 0;
 
@@ -96,13 +96,13 @@ class TeamEstimator {
   virtual ~TeamEstimator() = default;
   /// A vehicle starts, some time after others did.
   virtual void start(int vehicle, const Setup& setup) = 0;
-  virtual void moved(int vehicle, Time time, const Vector2& v_W, const Matrix2& q) = 0;
+  virtual void predict(int vehicle, Time time, const Vector2& v_W, const Matrix2& q) = 0;
   virtual void fix(int vehicle, Time time, const Vector2& p_W, double std_m) = 0;
   /// A vehicle transmits a frame, which others may receive later.
   virtual void sent(int vehicle, Time time) = 0;
-  /// Heard::payload_time is that of the sender; the payload is empty.
-  virtual void heard(int vehicle, const Heard& heard) = 0;
-  virtual void saw(int vehicle, const Relative& relative) = 0;
+  /// ReceivedRange::payload_time is that of the sender; the payload is empty.
+  virtual void on_range(int vehicle, const ReceivedRange& received) = 0;
+  virtual void on_bearing(int vehicle, const Relative& relative) = 0;
   virtual Estimate now(int vehicle, Time time) const = 0;
 };
 

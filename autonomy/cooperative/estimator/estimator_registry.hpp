@@ -18,8 +18,8 @@ struct Algorithm {
   std::string meaning;
   std::function<std::unique_ptr<Estimator>()> make;
   std::function<std::unique_ptr<TeamEstimator>()> make_team;  ///< of a reference that runs from a record only
-  bool on_land = true;                                        ///< it says what it does with sights of other vehicles
-  bool at_sea = true;                                         ///< it uses ranges by sound
+  bool on_land = true;  ///< it says what it does with relative measurements of other vehicles
+  bool at_sea = true;   ///< it uses ranges by sound
   /// Returns the CPU time that a program of the algorithm has used outside of this process; may be empty.
   std::function<double()> outside_cpu_s = {};
 };
@@ -53,7 +53,7 @@ bool add_algorithm(Algorithm algorithm);
 bool add_family(std::string prefix, std::function<Algorithm(const std::string& rest)> make);
 }  // namespace detail
 
-/// Whether an estimator has a saw() of its own.
+/// Whether an estimator has a on_bearing() of its own.
 template <class Type>
 inline constexpr bool has_own_saw = !std::is_same_v<decltype(&Type::saw), void (Estimator::*)(const Relative&)>;
 
@@ -66,8 +66,8 @@ constexpr bool is_at_sea() {
     return true;
 }
 
-/// Registers an algorithm, in its own file: an Estimator with `static constexpr const char* meaning`.  Without a saw()
-/// of its own it does not work on land.
+/// Registers an algorithm, in its own file: an Estimator with `static constexpr const char* meaning`.  Without a
+/// on_bearing() of its own it does not work on land.
 #define SHOAL_ESTIMATOR(name, Type)                                                 \
   [[maybe_unused]] static const bool registered_estimator_##Type =                  \
       ::navigation::detail::add_algorithm({name,                                    \

@@ -64,7 +64,7 @@ struct Setup {
   Vector2 position_W = Vector2::Zero();
   double position_std_m = 1;       ///< of each coordinate
   double sound_speed_mps = 1500;   ///< mean over the paths
-  std::size_t payload_bytes = 24;  ///< limit of what say() returns
+  std::size_t payload_bytes = 24;  ///< limit of what make_payload() returns
   double gate = 0;                 ///< largest squared innovation over its variance of a used range; 0: no limit
   std::uint64_t seed = 1;          ///< of estimators that draw random numbers
 

@@ -332,7 +332,8 @@ JointFilter::RelativeRow JointFilter::relative_row(const Part& own, const Positi
     }
     bearing_rad += heading_error(*observer);
   }
-  // Where they are, by their positions and by the sight: the measurement is linearized at what both give together.
+  // Where they are, by their positions and by the relative measurement: the measurement is linearized at what both give
+  // together.
   const Vector2 predicted_W = other.p_W - x_.segment<2>(own.offset);
   const Vector2 u_seen(std::cos(bearing_rad), std::sin(bearing_rad));
   const Matrix2 R_seen =

@@ -76,15 +76,15 @@ class JointFilter {
   Outcome range(int own, const Position& other, double dz_m, double range_m, double std_m, double more_variance_m2 = 0);
 
   /// Linearized measurement by a sensor: (horizontal range, bearing by the heading of the observer) of another part or
-  /// a position.  A position has no heading error.  It is linearized at the displacement that positions and sight give
-  /// together, not at the predicted one, which may be wrong by more than the distance: the first iteration of an
-  /// iterated filter (Bell and Cathey, IEEE Trans. Automatic Control 38(2), 1993).
+  /// a position.  A position has no heading error.  It is linearized at the displacement that positions and relative
+  /// measurement give together, not at the predicted one, which may be wrong by more than the distance: the first
+  /// iteration of an iterated filter (Bell and Cathey, IEEE Trans. Automatic Control 38(2), 1993).
   struct RelativeRow {
     Eigen::MatrixXd H;  ///< 2 rows
     Vector2 innovation = Vector2::Zero();
     Matrix2 J = Matrix2::Zero();  ///< derivative with respect to the other position
     /// Covariance of its error, with the terms of second order.  By the variances a along and s sideways of the
-    /// relative position after the sight they are 3 (s / 2r)^2 of the range, a s / r^4 of the bearing.
+    /// relative position after the relative measurement they are 3 (s / 2r)^2 of the range, a s / r^4 of the bearing.
     Matrix2 R = Matrix2::Zero();
   };
   RelativeRow relative_row(int own, int other, const Relative& seen) const;

@@ -32,7 +32,7 @@ class Independence {
   double kept_ = 1;  ///< share of the errors at the last exchange that is still in the estimate
 };
 
-/// Part of an estimator that filters its own vehicle only: all but heard() and say().
+/// Part of an estimator that filters its own vehicle only: all but on_range() and make_payload().
 template <class Own>
 class OwnFilterEstimator : public EstimatorOf<Own> {
  public:
@@ -41,7 +41,7 @@ class OwnFilterEstimator : public EstimatorOf<Own> {
     filter_ = JointFilter(setup.sound_speed_mps, setup.gate);
     filter_.add(setup.errors(), setup.time, setup.position_W, setup.position_std_m);
   }
-  void moved(Time time, const Vector2& v_W, const Matrix2& q) override { filter_.move(own, time, v_W, q); }
+  void predict(Time time, const Vector2& v_W, const Matrix2& q) override { filter_.move(own, time, v_W, q); }
   void fix(Time, const Vector2& p_W, double std_m) override {
     const Matrix2 before = filter_.covariance(own);
     filter_.fix(own, p_W, std_m);
@@ -58,8 +58,8 @@ class OwnFilterEstimator : public EstimatorOf<Own> {
     return {estimate.p_W, estimate.P};
   }
 
-  /// Updates with a sight of a vehicle whose payload is a position, as if that were independent.
-  void see_independent(const Relative& seen) {
+  /// Updates with a relative measurement of a vehicle whose payload is a position, as if that were independent.
+  void add_independent_bearing(const Relative& seen) {
     const auto other = position_in(seen.payload);
     if (!other) return;
     const JointFilter::RelativeRow row = filter_.relative_row(own, *other, seen);
@@ -67,10 +67,10 @@ class OwnFilterEstimator : public EstimatorOf<Own> {
   }
 
   /// Updates with the range to a sender whose payload is a position, as if that were independent.
-  void hear_independent(const Heard& heard) {
-    if (const auto sender = position_in(heard.payload))
-      filter_.range(own, *sender, heard.own_z_m - heard.sender_z_m, heard.range_m, heard.std_m,
-                    sender_clock_variance_m2(setup_, heard.sender, heard.toa - setup_.time));
+  void add_independent_range(const ReceivedRange& received) {
+    if (const auto sender = position_in(received.payload))
+      filter_.range(own, *sender, received.own_z_m - received.sender_z_m, received.range_m, received.std_m,
+                    sender_clock_variance_m2(setup_, received.sender, received.toa - setup_.time));
   }
 
   Setup setup_;

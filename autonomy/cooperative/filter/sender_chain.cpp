@@ -70,9 +70,9 @@ void SenderChains::advance(int sender, const ChainLink& link) {
   filter_.move_linear(part, Phi, Q * link.vector.tail<2>() + link.about_W - Phi * link.about_W, Q);
 }
 
-void SenderChains::range(const Heard& heard, double more_variance_m2) {
-  filter_.range(own, parts_.at(heard.sender), heard.own_z_m - heard.sender_z_m, heard.range_m,
-                std::sqrt(heard.std_m * heard.std_m + more_variance_m2));
+void SenderChains::range(const ReceivedRange& received, double more_variance_m2) {
+  filter_.range(own, parts_.at(received.sender), received.own_z_m - received.sender_z_m, received.range_m,
+                std::sqrt(received.std_m * received.std_m + more_variance_m2));
 }
 
 bool SenderChains::is_sound() const {

@@ -55,7 +55,7 @@ class SenderChains {
   /// Advances a sender from its last transmission to a later one.
   void advance(int sender, const ChainLink& link);
   /// Updates by the range to the last transmission of a sender.
-  void range(const Heard& heard, double more_variance_m2);
+  void range(const ReceivedRange& received, double more_variance_m2);
 
   /// Whether all numbers are finite and all variances above 0, which bytes of another program may have broken.
   bool is_sound() const;

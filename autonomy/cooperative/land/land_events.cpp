@@ -36,7 +36,7 @@ class LandEventMaker {
       const auto other = record_.land.index_of(seen.vehicle[i]);
       const sim::Vector3d relative_S(seen.relative_m[i][0], seen.relative_m[i][1], seen.relative_m[i][2]);
       if (!other || *other == item.vehicle || !relative_S.allFinite()) continue;
-      LandEvent event = event_of(LandEvent::Kind::saw, item, seen.utime);
+      LandEvent event = event_of(LandEvent::Kind::bearing, item, seen.utime);
       const Vector2 d_B = (own.swarm->X_BS * relative_S).head<2>();
       event.seen.time = event.time;
       event.seen.other = *other;

@@ -48,14 +48,14 @@ class OwnOnLand {
     waiting_.resize(vehicles_.size());
   }
 
-  void moved(int vehicle, Time time, const Vector2& v_W, const Matrix2& q) { at(vehicle).moved(time, v_W, q); }
+  void predict(int vehicle, Time time, const Vector2& v_W, const Matrix2& q) { at(vehicle).predict(time, v_W, q); }
   void fix(const LandEvent& event, double std_m) { at(event.vehicle).fix(event.time, event.p_W, std_m); }
   bool needs_other(const LandEvent&) const { return !has_radio_; }
-  void saw(const LandEvent& event) {
+  void on_bearing(const LandEvent& event) {
     Relative seen = event.seen;
     Bytes payload;
     if (!has_radio_) {
-      payload = say(seen.other, event.time);
+      payload = make_payload(seen.other, event.time);
       seen.payload_time = event.time;
     } else {
       auto& waiting = waiting_[static_cast<std::size_t>(event.vehicle)];
@@ -71,10 +71,11 @@ class OwnOnLand {
       }
     }
     seen.payload = payload;
-    at(event.vehicle).saw(seen);
+    at(event.vehicle).on_bearing(seen);
   }
   void sent(const LandEvent& event) {
-    frames_[event.message] = {event.time, at(event.vehicle).now(event.time).v_W, say(event.vehicle, event.time)};
+    frames_[event.message] = {event.time, at(event.vehicle).now(event.time).v_W,
+                              make_payload(event.vehicle, event.time)};
   }
   void received(const LandEvent& event) {
     if (const auto frame = frames_.find(event.message); frame != frames_.end())
@@ -90,8 +91,8 @@ class OwnOnLand {
   };
 
   Estimator& at(int vehicle) { return *vehicles_[static_cast<std::size_t>(vehicle)]; }
-  Bytes say(int vehicle, Time time) {
-    Bytes payload = at(vehicle).say(time, room_);
+  Bytes make_payload(int vehicle, Time time) {
+    Bytes payload = at(vehicle).make_payload(time, room_);
     if (payload.size() > room_)
       throw std::invalid_argument(name_ + " said " + std::to_string(payload.size()) +
                                   " bytes, its frames have room for " + std::to_string(room_));
@@ -99,7 +100,7 @@ class OwnOnLand {
     run_.payload_bytes[static_cast<std::size_t>(vehicle)] += payload.size();
     return payload;
   }
-  /// Refers a sight to where the other vehicle was before it traveled this distance.
+  /// Refers a relative measurement to where the other vehicle was before it traveled this distance.
   static void move_back(Relative& seen, const Vector2& traveled_W) {
     const Vector2 d_W = seen.range_m * Vector2(std::cos(seen.bearing_rad), std::sin(seen.bearing_rad)) - traveled_W;
     seen.range_m = d_W.norm();
@@ -124,10 +125,12 @@ class TeamOnLand {
       estimator_->start(static_cast<int>(i), land_setup(record, static_cast<int>(i), options));
   }
 
-  void moved(int vehicle, Time time, const Vector2& v_W, const Matrix2& q) { estimator_->moved(vehicle, time, v_W, q); }
+  void predict(int vehicle, Time time, const Vector2& v_W, const Matrix2& q) {
+    estimator_->predict(vehicle, time, v_W, q);
+  }
   void fix(const LandEvent& event, double std_m) { estimator_->fix(event.vehicle, event.time, event.p_W, std_m); }
   bool needs_other(const LandEvent&) const { return true; }
-  void saw(const LandEvent& event) { estimator_->saw(event.vehicle, event.seen); }
+  void on_bearing(const LandEvent& event) { estimator_->on_bearing(event.vehicle, event.seen); }
   void sent(const LandEvent&) {}
   void received(const LandEvent&) {}
   Estimate now(int vehicle, Time time) { return estimator_->now(vehicle, time); }
@@ -141,7 +144,7 @@ class Walk {
  public:
   explicit Walk(const OdometryTrack& track) : segments_(&track.segments()) {}
 
-  /// Makes the calls of moved() up to a time; with `part` also of the segment that is not complete by then.
+  /// Makes the calls of predict() up to a time; with `part` also of the segment that is not complete by then.
   template <class Move>
   void go(Time time, bool part, const Move& move) {
     for (; next_ < segments_->size() && (*segments_)[next_].to <= time; ++next_) call((*segments_)[next_].to, move);
@@ -167,7 +170,7 @@ void play_on_land(const LandRecord& record, const LandEvents& all, std::int64_t 
   std::vector<Walk> walks(all.tracks.begin(), all.tracks.end());
   const auto walk = [&](int vehicle, Time time, bool part) {
     walks[static_cast<std::size_t>(vehicle)].go(
-        time, part, [&](Time to, const Vector2& v_W, const Matrix2& q) { own.moved(vehicle, to, v_W, q); });
+        time, part, [&](Time to, const Vector2& v_W, const Matrix2& q) { own.predict(vehicle, to, v_W, q); });
   };
   Time tick_us = 0;
   const auto ticks_before = [&](Time time) {
@@ -187,9 +190,9 @@ void play_on_land(const LandRecord& record, const LandEvents& all, std::int64_t 
       case LandEvent::Kind::fix:
         own.fix(event, record.land.vehicles[static_cast<std::size_t>(event.vehicle)].fix_std_m);
         break;
-      case LandEvent::Kind::saw:
+      case LandEvent::Kind::bearing:
         if (own.needs_other(event)) walk(event.seen.other, event.time, true);
-        own.saw(event);
+        own.on_bearing(event);
         ++run.ranges;
         break;
       case LandEvent::Kind::sent:
@@ -208,7 +211,8 @@ void play_on_land(const LandRecord& record, const LandEvents& all, std::int64_t 
 OfflineRun run_on_land(const LandRecord& record, const Algorithm& algorithm, const NavOptions& options,
                        std::int64_t period_us) {
   if (!algorithm.on_land)
-    throw std::invalid_argument(algorithm.name + " has no use for sights of other vehicles: it does not work on land");
+    throw std::invalid_argument(algorithm.name +
+                                " has no use for relatives of other vehicles: it does not work on land");
   OfflineRun run;
   run.algorithm = algorithm.name;
   run.estimates.resize(record.land.vehicles.size());

@@ -16,7 +16,7 @@ namespace {
 constexpr double usual_turns_radprts = 0.3;
 /// Without its own correlation time an error of fixes is constant.
 constexpr double constant_time_s = 1e6;
-/// Least white error of a fix or a sight.
+/// Least white error of a fix or a relative measurement.
 constexpr double min_white_m = 0.01;
 
 void set_errors(const tools::VehicleErrors& errors, LandVehicle& vehicle) {

@@ -78,37 +78,38 @@ class PythonEstimator final : public Estimator {
                       {"gate", setup.gate},
                       {"seed", setup.seed}});
   }
-  void moved(Time time, const Vector2& v_W, const Matrix2& q) override {
+  void predict(Time time, const Vector2& v_W, const Matrix2& q) override {
     v_W_ = v_W;
-    send("moved", {{"t", seconds(time)}, {"v", {v_W.x(), v_W.y()}}, {"q", {q(0, 0), q(0, 1), q(1, 0), q(1, 1)}}});
+    send("predict", {{"t", seconds(time)}, {"v", {v_W.x(), v_W.y()}}, {"q", {q(0, 0), q(0, 1), q(1, 0), q(1, 1)}}});
   }
   void fix(Time time, const Vector2& p_W, double std_m) override {
     send("fix", {{"t", seconds(time)}, {"p", {p_W.x(), p_W.y()}}, {"std", std_m}});
   }
-  void heard(const Heard& heard) override {
-    send("heard", {{"toa", seconds(heard.toa)},
-                   {"tol", seconds(heard.tol)},
-                   {"sender", heard.sender},
-                   {"range", heard.range_m},
-                   {"std", heard.std_m},
-                   {"own_z", heard.own_z_m},
-                   {"z", heard.sender_z_m},
-                   {"payload_time", seconds(heard.payload_time)},
-                   {"payload", hex_of(heard.payload)}});
+  void on_range(const ReceivedRange& received) override {
+    send("on_range", {{"toa", seconds(received.toa)},
+                      {"tol", seconds(received.tol)},
+                      {"sender", received.sender},
+                      {"range", received.range_m},
+                      {"std", received.std_m},
+                      {"own_z", received.own_z_m},
+                      {"z", received.sender_z_m},
+                      {"payload_time", seconds(received.payload_time)},
+                      {"payload", hex_of(received.payload)}});
   }
-  void saw(const Relative& seen) override {
-    send("saw", {{"t", seconds(seen.time)},
-                 {"other", seen.other},
-                 {"range", seen.range_m},
-                 {"bearing", seen.bearing_rad},
-                 {"by_other", seen.by_other},
-                 {"range_std", seen.range_std_m},
-                 {"bearing_std", seen.bearing_std_rad},
-                 {"payload_time", seconds(seen.payload_time)},
-                 {"payload", hex_of(seen.payload)}});
+  void on_bearing(const Relative& seen) override {
+    send("on_bearing", {{"t", seconds(seen.time)},
+                        {"other", seen.other},
+                        {"range", seen.range_m},
+                        {"bearing", seen.bearing_rad},
+                        {"by_other", seen.by_other},
+                        {"range_std", seen.range_std_m},
+                        {"bearing_std", seen.bearing_std_rad},
+                        {"payload_time", seconds(seen.payload_time)},
+                        {"payload", hex_of(seen.payload)}});
   }
-  Bytes say(Time time, std::size_t max_bytes) override {
-    return bytes_of_hex(request("say", {{"t", seconds(time)}, {"most", max_bytes}})["payload"].get<std::string>());
+  Bytes make_payload(Time time, std::size_t max_bytes) override {
+    return bytes_of_hex(
+        request("make_payload", {{"t", seconds(time)}, {"most", max_bytes}})["payload"].get<std::string>());
   }
   Estimate now(Time time) const override {
     const auto numbers = request("now", {{"t", seconds(time)}})["numbers"].get<std::vector<double>>();
@@ -143,7 +144,7 @@ Algorithm python_algorithm(const std::string& rest) {
           "an algorithm in Python",
           [host] { return std::make_unique<PythonEstimator>(host); },
           {},
-          host->has_saw(),
+          host->has_on_bearing(),
           true,
           [host] { return host->cpu_s(); }};
 }

@@ -92,7 +92,8 @@ PythonHost::PythonHost(const std::string& file, const std::string& class_name)
   for (bridges::FileDescriptor* end : {&requests[0], &answers[1]})
     const bridges::FileDescriptor closed = std::move(*end);
   try {
-    has_saw_ = request({{"do", "load"}, {"id", 0}, {"path", file + ".py"}, {"class", class_name}}).value("saw", false);
+    has_on_bearing_ =
+        request({{"do", "load"}, {"id", 0}, {"path", file + ".py"}, {"class", class_name}}).value("on_bearing", false);
   } catch (...) {
     end();
     throw;

@@ -33,8 +33,8 @@ class PythonHost {
   /// Sends a request and returns its answer.  Throws EstimatorFailure, too, with the error of the estimator; for a
   /// ValueError of start() std::invalid_argument: it cannot work with this set-up.
   nlohmann::json request(const nlohmann::json& request);
-  /// Whether the class has saw(), for sights of other vehicles.
-  bool has_saw() const { return has_saw_; }
+  /// Whether the class has on_bearing(), for relative measurements of other vehicles.
+  bool has_on_bearing() const { return has_on_bearing_; }
   /// Returns the CPU time that the interpreter has used so far; after its end 0.
   double cpu_s() const;
   /// Returns a number for a new estimator.
@@ -50,7 +50,7 @@ class PythonHost {
   pid_t child_ = -1;
   bridges::FileDescriptor to_child_, from_child_;
   std::string unread_;
-  bool has_saw_ = false;
+  bool has_on_bearing_ = false;
   bool is_stuck_ = false;  ///< it gave no answer in time
   int last_number_ = 0;
 };

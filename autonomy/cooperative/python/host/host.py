@@ -73,18 +73,18 @@ def call(estimator, what, given):
         setup.errors = setup.team_errors[setup.own]
         estimator.start(setup)
         return {}
-    if what == "moved":
-        estimator.moved(given["t"], vector(given["v"]), matrix(given["q"]))
+    if what == "predict":
+        estimator.predict(given["t"], vector(given["v"]), matrix(given["q"]))
     elif what == "fix":
         estimator.fix(given["t"], vector(given["p"]), given["std"])
-    elif what in ("heard", "saw"):
-        if what == "saw" and not hasattr(estimator, "saw"):
+    elif what in ("on_range", "on_bearing"):
+        if what == "on_bearing" and not hasattr(estimator, what):
             return None
         message = types.SimpleNamespace(**given)
         message.payload = bytes.fromhex(given["payload"])
         getattr(estimator, what)(message)
-    elif what == "say":
-        return {"payload": bytes(estimator.say(given["t"], given["most"])).hex()}
+    elif what == "make_payload":
+        return {"payload": bytes(estimator.make_payload(given["t"], given["most"])).hex()}
     elif what == "now":
         p, P = estimator.now(given["t"])
         if len(p) != 2 or len(P) != 2 or any(len(row) != 2 for row in P):
@@ -113,7 +113,7 @@ def main():
         try:
             if what == "load":
                 kind = load(request["path"], request["class"])
-                answer = {"saw": hasattr(kind, "saw")}
+                answer = {"on_bearing": hasattr(kind, "on_bearing")}
             elif error is None and what == "new":
                 estimators[number] = kind()
             elif error is None and what == "copy":
@@ -129,7 +129,7 @@ def main():
             text = "".join(c if c.isprintable() else " " for c in str(exception))[:300]
             cannot_work = what == "start" and isinstance(exception, ValueError)
             error = f"{type(exception).__name__}: {text}{where}".encode("utf-8", "replace").decode()
-        if what in ("load", "start", "say", "now"):
+        if what in ("load", "start", "make_payload", "now"):
             failed = {"error": error, "cannot_work": cannot_work}
             answers.write(json.dumps(failed if error is not None else answer) + "\n")
             answers.flush()

@@ -12,9 +12,9 @@
 namespace {
 
 using namespace navigation;
-using test::heard_from;
 using test::nav_second;
 using test::nav_setup;
+using test::received_from;
 using test::started;
 
 /// A server and a client for 20 minutes: the client receives the server every 10 s, except for some losses, and the
@@ -37,22 +37,22 @@ void converse(const std::string& algorithm, const std::function<bool(int)>& is_l
     const Matrix2 q_server = server_q * Matrix2::Identity(), q_client = 1e-2 * Matrix2::Identity();
     const Vector2 by_server = v_server + std::sqrt(server_q) * Vector2(random.gaussian(), random.gaussian());
     const Vector2 by_client = v_client + std::sqrt(1e-2) * Vector2(random.gaussian(), random.gaussian());
-    server->moved(now, by_server, q_server);
-    client->moved(now, by_client, q_client);
-    team->moved(0, now, by_server, q_server);
-    team->moved(1, now, by_client, q_client);
+    server->predict(now, by_server, q_server);
+    client->predict(now, by_client, q_client);
+    team->predict(0, now, by_server, q_server);
+    team->predict(1, now, by_client, q_client);
     if (step % 300 == 157) {
       const Vector2 fix = true_server + 3 * Vector2(random.gaussian(), random.gaussian());
       server->fix(now, fix, 3);
       team->fix(0, now, fix, 3);
     }
     if (step % 10 != 0) continue;
-    const Bytes payload = server->say(now, max_bytes);
+    const Bytes payload = server->make_payload(now, max_bytes);
     const double range_m = (true_server - true_client).norm() + random.gaussian();
     team->sent(0, now);
     if (is_lost(step / 10)) continue;
-    client->heard(heard_from(0, payload, range_m, 1, now));
-    team->heard(1, heard_from(0, {}, range_m, 1, now));
+    client->on_range(received_from(0, payload, range_m, 1, now));
+    team->on_range(1, received_from(0, {}, range_m, 1, now));
     compare(client->now(now), team->now(1, now));
   }
 }
@@ -88,14 +88,14 @@ TEST(OriginStateMethod, LinksToAPacketThatWasSentBeforeTheSenderMoved) {
     for (int second = 0; second <= 60; second += 20) {
       const Time now = second * nav_second;
       const Vector2 v_server(0, 1), v_client(1, 0);
-      server->moved(now, v_server, 1e-2 * Matrix2::Identity());
-      client->moved(now, v_client, 1e-2 * Matrix2::Identity());
-      team->moved(0, now, v_server, 1e-2 * Matrix2::Identity());
-      team->moved(1, now, v_client, 1e-2 * Matrix2::Identity());
+      server->predict(now, v_server, 1e-2 * Matrix2::Identity());
+      client->predict(now, v_client, 1e-2 * Matrix2::Identity());
+      team->predict(0, now, v_server, 1e-2 * Matrix2::Identity());
+      team->predict(1, now, v_client, 1e-2 * Matrix2::Identity());
       const double range_m = std::hypot(300 - second, second) + 0.5;
       team->sent(0, now);
-      client->heard(heard_from(0, server->say(now, max_bytes), range_m, 1, now));
-      team->heard(1, heard_from(0, {}, range_m, 1, now));
+      client->on_range(received_from(0, server->make_payload(now, max_bytes), range_m, 1, now));
+      team->on_range(1, received_from(0, {}, range_m, 1, now));
       // Numbers of 8 bytes, or 4: as in the tests above.
       EXPECT_LT((client->now(now).p_W - team->now(1, now).p_W).norm(), max_bytes > 57 ? 1e-6 : 0.05) << second;
     }
@@ -107,15 +107,15 @@ TEST(OriginStateMethod, LinksToAPacketThatWasSentBeforeTheSenderMoved) {
 TEST(OriginStateMethod, SaysItsPositionAloneWhenFixesReplacedWhatItSaid) {
   const auto server = started("osm", nav_setup(2, 0, {0, 0}, 100));
   const auto fix_at = [&](int second) {
-    server->moved(second * nav_second, {0, 0}, 100 * Matrix2::Identity());
+    server->predict(second * nav_second, {0, 0}, 100 * Matrix2::Identity());
     server->fix(second * nav_second, {0, 0}, 1);
   };
   for (int second = 1; second <= 5; ++second) fix_at(second);
   // The first packet links what follows below to what it knew at the surface.
-  EXPECT_EQ(server->say(5 * nav_second, 57).size(), 57U);
+  EXPECT_EQ(server->make_payload(5 * nav_second, 57).size(), 57U);
   for (int second = 6; second <= 10; ++second) fix_at(second);
-  EXPECT_EQ(server->say(10 * nav_second, 57).size(), 13U);
-  EXPECT_EQ(server->say(10 * nav_second, 57).size(), 57U);
+  EXPECT_EQ(server->make_payload(10 * nav_second, 57).size(), 13U);
+  EXPECT_EQ(server->make_payload(10 * nav_second, 57).size(), 57U);
 }
 
 TEST(DecentralizedInformationFilter, IsTheCentralizedFilterWithoutLosses) {
@@ -167,8 +167,8 @@ TEST_P(RangeOfATeam, RefersToTheTransmissionAndReachesTheSenderToo) {
   team->start(0, nav_setup(2, 0, {0, 0}, 1));
   team->start(1, nav_setup(2, 1, {test::far_m, 0}, 2));
   team->sent(0, nav_second);
-  team->moved(0, 5 * nav_second, {1, 0}, Matrix2::Zero());
-  team->heard(1, heard_from(0, {}, test::far_m + 10, std::sqrt(5), nav_second));
+  team->predict(0, 5 * nav_second, {1, 0}, Matrix2::Zero());
+  team->on_range(1, received_from(0, {}, test::far_m + 10, std::sqrt(5), nav_second));
   // S = 1 + 4 + 5: the copy of the sender moves by -1 m, and it with the copy.
   EXPECT_NEAR(team->now(0, 5 * nav_second).p_W.x(), 5 - 1, 1e-4);
   EXPECT_NEAR(team->now(1, 5 * nav_second).p_W.x(), test::far_m + 4, 1e-4);
@@ -184,16 +184,16 @@ TEST(PairwiseCommunication, KeepsACovarianceWhenFixesOpenThePosition) {
     luft->start(vehicle, setup);
   }
   Relative seen{.time = nav_second, .other = 1, .range_m = 20, .range_std_m = 0.1, .bearing_std_rad = 0.005};
-  luft->saw(0, seen);
+  luft->on_bearing(0, seen);
   // Five fixes that are 100 m off, of which the last is used.
   for (int i = 2; i < 7; ++i) luft->fix(0, i * nav_second, {100, 0}, 3);
   EXPECT_NEAR(luft->now(0, 7 * nav_second).p_W.x(), 100, 1);
-  // The vehicle is uncertain by 3 m, and correlated with the other one less than fully: both stay so after a sight that
-  // fits.
+  // The vehicle is uncertain by 3 m, and correlated with the other one less than fully: both stay so after a relative
+  // measurement that fits.
   seen.time = 7 * nav_second;
   seen.bearing_rad = std::numbers::pi;
   seen.range_m = 80;
-  luft->saw(0, seen);
+  luft->on_bearing(0, seen);
   for (const int vehicle : {0, 1}) {
     const Matrix2 P = luft->now(vehicle, 7 * nav_second).P;
     EXPECT_GT(P(0, 0), 0) << vehicle;
@@ -210,11 +210,11 @@ TEST(PairwiseCommunication, IsTheCentralizedFilterForTwo) {
     each->start(1, nav_setup(2, 1, {20, 0}, 2));
     for (int i = 1; i <= 10; ++i) {
       const Time now = i * nav_second;
-      each->moved(0, now, {1, 0}, 0.1 * Matrix2::Identity());
-      each->moved(1, now, {0, 1}, 0.2 * Matrix2::Identity());
+      each->predict(0, now, {1, 0}, 0.1 * Matrix2::Identity());
+      each->predict(1, now, {0, 1}, 0.2 * Matrix2::Identity());
       if (i == 1) each->fix(0, now, {1.5, 0.2}, 0.5);
       if (i % 2 != 0) continue;
-      each->saw(
+      each->on_bearing(
           0,
           {.time = now, .other = 1, .range_m = 21, .bearing_rad = 0.2, .range_std_m = 0.15, .bearing_std_rad = 0.05});
     }

@@ -29,15 +29,15 @@ inline std::unique_ptr<navigation::Estimator> started(const std::string& algorit
   return estimator;
 }
 
-inline navigation::Heard heard_from(int sender, const navigation::Bytes& payload, double range_m, double std_m = 1,
-                                    navigation::Time time = 0) {
-  navigation::Heard heard;
-  heard.toa = heard.tol = heard.payload_time = time;
-  heard.sender = sender;
-  heard.range_m = range_m;
-  heard.std_m = std_m;
-  heard.payload = payload;
-  return heard;
+inline navigation::ReceivedRange received_from(int sender, const navigation::Bytes& payload, double range_m,
+                                               double std_m = 1, navigation::Time time = 0) {
+  navigation::ReceivedRange received;
+  received.toa = received.tol = received.payload_time = time;
+  received.sender = sender;
+  received.range_m = range_m;
+  received.std_m = std_m;
+  received.payload = payload;
+  return received;
 }
 
 }  // namespace test

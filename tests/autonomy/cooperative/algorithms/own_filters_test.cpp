@@ -11,17 +11,17 @@ namespace {
 
 using namespace navigation;
 using test::far_m;
-using test::heard_from;
 using test::nav_second;
 using test::nav_setup;
+using test::received_from;
 using test::started;
 
 TEST(DeadReckoning, HearsNothingAndSaysNothing) {
   const auto dr = started("dr", nav_setup(2, 0, {0, 0}, 1));
-  dr->moved(100 * nav_second, {1, 2}, 0.01 * Matrix2::Identity());
+  dr->predict(100 * nav_second, {1, 2}, 0.01 * Matrix2::Identity());
   const auto other = started("naive", nav_setup(2, 1, {500, 0}, 1));
-  dr->heard(heard_from(1, other->say(0, 100), 450));
-  EXPECT_TRUE(dr->say(100 * nav_second, 100).empty());
+  dr->on_range(received_from(1, other->make_payload(0, 100), 450));
+  EXPECT_TRUE(dr->make_payload(100 * nav_second, 100).empty());
   const Estimate estimate = dr->now(101 * nav_second);
   EXPECT_TRUE(estimate.p_W.isApprox(Vector2(101, 202)));
   EXPECT_TRUE(estimate.P.isApprox(2 * Matrix2::Identity()));  // 1 + 0.01 * 100
@@ -30,7 +30,7 @@ TEST(DeadReckoning, HearsNothingAndSaysNothing) {
 TEST(Naive, AddsTheVarianceOfTheSenderToThatOfTheRange) {
   const auto own = started("naive", nav_setup(2, 0, {0, 0}, 2));
   const auto sender = started("naive", nav_setup(2, 1, {-far_m, 0}, 3));
-  own->heard(heard_from(1, sender->say(0, 100), far_m + 14));
+  own->on_range(received_from(1, sender->make_payload(0, 100), far_m + 14));
   // S = 4 + 9 + 1 = 14: it moves by 4 / 14 of the innovation of 14 m.
   const Estimate estimate = own->now(0);
   EXPECT_NEAR(estimate.p_W.x(), 4, 1e-4);
@@ -42,8 +42,8 @@ TEST(Naive, CountsItsOwnInformationAgain) {
   const auto own = started("naive", nav_setup(2, 0, {0, 0}, 2));
   const auto other = started("naive", nav_setup(2, 1, {-far_m, 0}, 3));
   for (int i = 0; i < 20; ++i) {
-    own->heard(heard_from(1, other->say(0, 100), far_m));
-    other->heard(heard_from(0, own->say(0, 100), far_m));
+    own->on_range(received_from(1, other->make_payload(0, 100), far_m));
+    other->on_range(received_from(0, own->make_payload(0, 100), far_m));
   }
   // Together they know x_0 - x_1 to 1 m / sqrt(40), and the mean of both to 1 / (1 / 4 + 1 / 9): x_0 to 1.66 m.
   EXPECT_LT(std::sqrt(own->now(0).P(0, 0)), 0.8);
@@ -54,7 +54,8 @@ TEST(NaiveWithoutClocks, TakesTheErrorOfItsClockForOneOfItsPosition) {
   setup.team[0].errors.clock_s = 0.002;  // 3 m
   const auto with_clock = started("naive", setup), without = started("naive_clockless", setup);
   const auto sender = started("naive", nav_setup(2, 1, {-far_m, 0}, 3));
-  for (const auto& own : {with_clock.get(), without.get()}) own->heard(heard_from(1, sender->say(0, 100), far_m + 7));
+  for (const auto& own : {with_clock.get(), without.get()})
+    own->on_range(received_from(1, sender->make_payload(0, 100), far_m + 7));
   EXPECT_NEAR(with_clock->now(0).p_W.x(), 7 * 4.0 / (4 + 9 + 9 + 1), 1e-3);
   EXPECT_NEAR(without->now(0).p_W.x(), 7 * 4.0 / (4 + 9 + 1), 1e-3);
   EXPECT_EQ(without->now(0).clock_error_s, 0);
@@ -62,18 +63,18 @@ TEST(NaiveWithoutClocks, TakesTheErrorOfItsClockForOneOfItsPosition) {
 
 TEST(NaiveOfDeadReckoning, SaysWhatItKnowsWithoutRanges) {
   const auto own = started("naive_dr", nav_setup(2, 0, {0, 0}, 2));
-  const Bytes before = own->say(0, 100);
+  const Bytes before = own->make_payload(0, 100);
   const auto sender = started("naive_dr", nav_setup(2, 1, {-far_m, 0}, 0.1));
-  own->heard(heard_from(1, sender->say(0, 100), far_m + 10));
+  own->on_range(received_from(1, sender->make_payload(0, 100), far_m + 10));
   EXPECT_LT(own->now(0).P(0, 0), 1);
-  EXPECT_EQ(own->say(0, 100), before);
+  EXPECT_EQ(own->make_payload(0, 100), before);
 }
 
 TEST(CovarianceIntersection, DoesNotUseARangeThatDoesNotPay) {
   // Inflating a round covariance of 4 by 1 / w costs more than a range to a sender of 9 gives, for all w.
   const auto own = started("ci", nav_setup(2, 0, {0, 0}, 2));
   const auto sender = started("ci", nav_setup(2, 1, {-far_m, 0}, 3));
-  own->heard(heard_from(1, sender->say(0, 100), far_m + 1));
+  own->on_range(received_from(1, sender->make_payload(0, 100), far_m + 1));
   EXPECT_TRUE(own->now(0).P.isApprox(4 * Matrix2::Identity()));
   EXPECT_EQ(own->now(0).p_W.x(), 0);
 }
@@ -81,7 +82,7 @@ TEST(CovarianceIntersection, DoesNotUseARangeThatDoesNotPay) {
 TEST(CovarianceIntersection, InflatesBothByTheWeightOfLeastTrace) {
   const auto own = started("ci", nav_setup(2, 0, {0, 0}, 2));
   const auto sender = started("ci", nav_setup(2, 1, {-far_m, 0}, 0.1));
-  own->heard(heard_from(1, sender->say(0, 100), far_m + 1));
+  own->on_range(received_from(1, sender->make_payload(0, 100), far_m + 1));
   const Estimate estimate = own->now(0);
   const double w = 4 / estimate.P(1, 1);  // across the line P1 = P / w is unchanged
   EXPECT_GT(w, 0.5);
@@ -100,7 +101,7 @@ TEST(CovarianceIntersection, TakesASenderWithSatellitesAsIndependent) {
   const auto own = started("ci", nav_setup(2, 0, {0, 0}, 2));
   const auto sender = started("ci", nav_setup(2, 1, {-far_m, 0}, 1e4));
   sender->fix(0, {-far_m, 0}, 3);
-  own->heard(heard_from(1, sender->say(0, 100), far_m + 14));
+  own->on_range(received_from(1, sender->make_payload(0, 100), far_m + 14));
   EXPECT_NEAR(own->now(0).p_W.x(), 4, 1e-4);  // as naive
 }
 
@@ -108,8 +109,8 @@ TEST(CovarianceIntersection, IsNeverTooSureOfCommonInformation) {
   const auto own = started("ci", nav_setup(2, 0, {0, 0}, 2));
   const auto other = started("ci", nav_setup(2, 1, {-far_m, 0}, 3));
   for (int i = 0; i < 100; ++i) {
-    own->heard(heard_from(1, other->say(0, 100), far_m, 0.01));
-    other->heard(heard_from(0, own->say(0, 100), far_m, 0.01));
+    own->on_range(received_from(1, other->make_payload(0, 100), far_m, 0.01));
+    other->on_range(received_from(0, own->make_payload(0, 100), far_m, 0.01));
   }
   // The best that anyone can know is 1 / (1 / 4 + 1 / 9).
   EXPECT_GE(own->now(0).P(0, 0), 36.0 / 13);
@@ -118,7 +119,7 @@ TEST(CovarianceIntersection, IsNeverTooSureOfCommonInformation) {
 TEST(SplitCovarianceIntersection, IsExactForIndependentSenders) {
   const auto own = started("sci", nav_setup(2, 0, {0, 0}, 2));
   const auto sender = started("sci", nav_setup(2, 1, {-far_m, 0}, 3));
-  own->heard(heard_from(1, sender->say(0, 100), far_m + 14));
+  own->on_range(received_from(1, sender->make_payload(0, 100), far_m + 14));
   // Both have own measurements only: as naive.
   EXPECT_NEAR(own->now(0).p_W.x(), 4, 0.01);
   EXPECT_NEAR(own->now(0).P(0, 0), 4 - 16.0 / 14, 0.01);
@@ -132,7 +133,7 @@ TEST(SplitCovarianceIntersection, ADependentPartIsInflatedAndStaysDependent) {
   PayloadWriter writer(payload);
   write_position(writer, {{-far_m, 0}, 9 * Matrix2::Identity()});
   write_covariance(writer, Matrix2::Identity());
-  own->heard(heard_from(1, payload, far_m + 10));
+  own->on_range(received_from(1, payload, far_m + 10));
   const double S = 4 + 8 / 0.99 + 1 + 1, K = 4 / S;
   const Estimate estimate = own->now(0);
   EXPECT_NEAR(estimate.p_W.x(), 10 * K, 1e-3);
@@ -143,16 +144,16 @@ TEST(SplitCovarianceIntersection, ADependentPartIsInflatedAndStaysDependent) {
     read_position(reader);
     return (*read_covariance(reader))(0, 0);
   };
-  EXPECT_NEAR(independent_m2(own->say(0, 100)), (1 - K) * (1 - K) * 4 + K * K, 0.04);
-  EXPECT_NEAR(independent_m2(own->say(0, 100)), 0, 1e-3);  // what it said, others may have
+  EXPECT_NEAR(independent_m2(own->make_payload(0, 100)), (1 - K) * (1 - K) * 4 + K * K, 0.04);
+  EXPECT_NEAR(independent_m2(own->make_payload(0, 100)), 0, 1e-3);  // what it said, others may have
 }
 
 TEST(SplitCovarianceIntersection, IsNeverTooSureOfCommonInformation) {
   const auto own = started("sci", nav_setup(2, 0, {0, 0}, 2));
   const auto other = started("sci", nav_setup(2, 1, {-far_m, 0}, 3));
   for (int i = 0; i < 100; ++i) {
-    own->heard(heard_from(1, other->say(0, 100), far_m, 0.01));
-    other->heard(heard_from(0, own->say(0, 100), far_m, 0.01));
+    own->on_range(received_from(1, other->make_payload(0, 100), far_m, 0.01));
+    other->on_range(received_from(0, own->make_payload(0, 100), far_m, 0.01));
   }
   // The best that anyone can know is 1 / (1 / 4 + 1 / 9).
   EXPECT_GE(own->now(0).P(0, 0), 36.0 / 13 - 0.01);
@@ -168,8 +169,8 @@ TEST(FixedLagSmoother, IsTheKalmanFilterOfALinearProblem) {
   for (int i = 1; i <= 30; ++i) {  // 300 s: the oldest are marginalized
     const Time now = 10 * i * nav_second;
     for (const auto& own : {smoother.get(), filter.get()}) {
-      own->moved(now, {0.1, 0}, 0.01 * Matrix2::Identity());
-      own->heard(heard_from(1, sender->say(0, 100), far_m + i + (i % 3), 1, now));
+      own->predict(now, {0.1, 0}, 0.01 * Matrix2::Identity());
+      own->on_range(received_from(1, sender->make_payload(0, 100), far_m + i + (i % 3), 1, now));
       if (i % 10 == 0) own->fix(now, {i + 0.5, -0.2}, 1);
     }
     const Estimate a = smoother->now(now), b = filter->now(now);
@@ -187,11 +188,11 @@ TEST(FixedLagSmoother, FindsAStartThatIsWrongByHundredsOfMeters) {
   const Vector2 truth(150, 220);  // at rest
   for (int i = 1; i <= 6; ++i) {
     const Time now = 10 * i * nav_second;
-    smoother->moved(now, {0, 0}, 1e-4 * Matrix2::Identity());
+    smoother->predict(now, {0, 0}, 1e-4 * Matrix2::Identity());
     const bool is_west = i % 2 == 0;
     const Vector2 sender = is_west ? Vector2(-300, 0) : Vector2(0, -300);
-    const Bytes payload = (is_west ? west : south)->say(0, 100);
-    smoother->heard(heard_from(is_west ? 1 : 2, payload, (truth - sender).norm(), 1, now));
+    const Bytes payload = (is_west ? west : south)->make_payload(0, 100);
+    smoother->on_range(received_from(is_west ? 1 : 2, payload, (truth - sender).norm(), 1, now));
   }
   EXPECT_NEAR((smoother->now(60 * nav_second).p_W - truth).norm(), 0, 2);  // 4 sigma of 6 ranges of 1 m
 }
@@ -199,7 +200,7 @@ TEST(FixedLagSmoother, FindsAStartThatIsWrongByHundredsOfMeters) {
 TEST(CoopAuvFilter, AddsTheVarianceOfTheSenderToThatOfTheRange) {
   const auto own = started("coop_auv", nav_setup(2, 0, {0, 0}, 2));
   const auto sender = started("naive", nav_setup(2, 1, {-far_m, 0}, 3));
-  own->heard(heard_from(1, sender->say(0, 100), far_m + 14));
+  own->on_range(received_from(1, sender->make_payload(0, 100), far_m + 14));
   const Estimate estimate = own->now(0);  // S = 4 + 9 + 1
   EXPECT_NEAR(estimate.p_W.x(), 4, 1e-3);
   EXPECT_NEAR(estimate.P(0, 0), 4 - 16.0 / 14, 1e-3);
@@ -214,20 +215,20 @@ TEST(CoopAuvFilter, DoubtsASenderThatContradictsAndStillUsesTheOther) {
   Time now = 0;
   const auto receive = [&](int sender, const Bytes& payload, double range_m) {
     now += nav_second;
-    own->moved(now, {0, 0}, 1e-6 * Matrix2::Identity());
-    own->heard(heard_from(sender, payload, range_m, 1, now));
+    own->predict(now, {0, 0}, 1e-6 * Matrix2::Identity());
+    own->on_range(received_from(sender, payload, range_m, 1, now));
   };
-  for (int i = 0; i < 6; ++i) receive(1, west->say(0, 100), far_m + 500);
-  receive(1, west->say(0, 100), far_m + 1);  // agrees, but it is in doubt
+  for (int i = 0; i < 6; ++i) receive(1, west->make_payload(0, 100), far_m + 500);
+  receive(1, west->make_payload(0, 100), far_m + 1);  // agrees, but it is in doubt
   EXPECT_NEAR(own->now(now).p_W.x(), 0, 1e-9);
-  receive(2, south->say(0, 100), far_m + 6);
+  receive(2, south->make_payload(0, 100), far_m + 6);
   EXPECT_NEAR(own->now(now).p_W.y(), 6 * 4.0 / (4 + 1 + 1), 1e-3);
 }
 
 /// A rover that has driven 10 m east.
 std::unique_ptr<Estimator> driven_rover() {
   auto rover = started("coop_rover", nav_setup(2, 0, {5, 0}, 0.1));
-  for (int i = 1; i <= 10; ++i) rover->moved(i * nav_second, {1, 0}, 100 * Matrix2::Identity());
+  for (int i = 1; i <= 10; ++i) rover->predict(i * nav_second, {1, 0}, 100 * Matrix2::Identity());
   return rover;
 }
 
@@ -242,7 +243,7 @@ TEST(CoopRoverFilter, HasTheErrorsOfOdometryOfTheProgram) {
 TEST(CoopRoverFilter, UsesASightFromItsHeading) {
   const auto rover = driven_rover();
   const auto other = started("naive", nav_setup(2, 1, {15, 4}, 0.2));
-  const Bytes payload = other->say(0, 100);
+  const Bytes payload = other->make_payload(0, 100);
   Relative seen;
   seen.time = 10 * nav_second;
   seen.other = 1;
@@ -250,8 +251,9 @@ TEST(CoopRoverFilter, UsesASightFromItsHeading) {
   seen.bearing_rad = std::numbers::pi / 2;
   seen.range_std_m = 0.1;
   seen.payload = payload;
-  rover->saw(seen);
-  // Across, as above, with the error of the heading, 0.015^2 (9 + ... + 1), which a sight from 4 m away shows along.
+  rover->on_bearing(seen);
+  // Across, as above, with the error of the heading, 0.015^2 (9 + ... + 1), which a relative measurement from 4 m away
+  // shows along.
   const double R = 0.2 * 0.2 + 0.1 * 0.1, across = 0.1 * 0.1 + 0.01 * 0.01 * 10 + 0.015 * 0.015 * 285;
   const double both = 4 * 0.015 * 0.015 * 45;
   const double along = 0.1 * 0.1 + 0.03 * 0.03 * 10 + 4 * 4 * 0.015 * 0.015 * 10 + R;
@@ -261,9 +263,9 @@ TEST(CoopRoverFilter, UsesASightFromItsHeading) {
 
 TEST(CoopRoverFilter, SendsItsPositionWithGpsOnlyAndNotBetterThanAFix) {
   const auto rover = driven_rover();
-  EXPECT_TRUE(rover->say(10 * nav_second, 100).empty());
+  EXPECT_TRUE(rover->make_payload(10 * nav_second, 100).empty());
   rover->fix(10 * nav_second, {15, 0}, 0.5);
-  const auto sent = position_in(rover->say(10 * nav_second, 100));
+  const auto sent = position_in(rover->make_payload(10 * nav_second, 100));
   ASSERT_TRUE(sent);
   EXPECT_NEAR(sent->P(0, 0), 0.5 * 0.5, 1e-9);
   EXPECT_NEAR(sent->P(1, 1), 0.5 * 0.5, 1e-9);
@@ -284,10 +286,10 @@ TEST(ParticleStart, FindsAnUnknownStartByTheRangesOfThreeSenders) {
   const Vector2 senders[] = {{0, 0}, {500, 0}, {0, 500}};
   for (int i = 0; i < 12; ++i) {
     const Time now = 10 * (i + 1) * nav_second;
-    filter->moved(now, {0, 0}, 1e-3 * Matrix2::Identity());
+    filter->predict(now, {0, 0}, 1e-3 * Matrix2::Identity());
     const Vector2 sender = senders[i % 3];
     const auto other = started("naive", nav_setup(4, 1 + i % 3, sender, 0.5));
-    filter->heard(heard_from(1 + i % 3, other->say(0, 100), (truth - sender).norm(), 1, now));
+    filter->on_range(received_from(1 + i % 3, other->make_payload(0, 100), (truth - sender).norm(), 1, now));
   }
   EXPECT_NEAR((filter->now(120 * nav_second).p_W - truth).norm(), 0, 3);
   EXPECT_LT(filter->now(120 * nav_second).P.trace(), 9);
@@ -296,7 +298,7 @@ TEST(ParticleStart, FindsAnUnknownStartByTheRangesOfThreeSenders) {
 TEST(ParticleStart, IsNaiveAfterAKnownStart) {
   const auto filter = started("pf", nav_setup(2, 0, {0, 0}, 2));
   const auto sender = started("naive", nav_setup(2, 1, {-far_m, 0}, 3));
-  filter->heard(heard_from(1, sender->say(0, 100), far_m + 14));
+  filter->on_range(received_from(1, sender->make_payload(0, 100), far_m + 14));
   EXPECT_NEAR(filter->now(0).p_W.x(), 4, 1e-4);
 }
 
@@ -318,7 +320,7 @@ TEST(Algorithms, IgnorePayloadsOfOthers) {
     if (!algorithm->make) continue;
     const auto own = started(algorithm->name, nav_setup(2, 0, {0, 0}, 2));
     for (const Bytes& payload : {Bytes{}, Bytes{1}, Bytes(12, 255), Bytes(30, 0), Bytes(113, 255), Bytes(200, 7)})
-      own->heard(heard_from(1, payload, 100));
+      own->on_range(received_from(1, payload, 100));
     EXPECT_TRUE(own->now(0).p_W.allFinite()) << algorithm->name;
   }
 }
@@ -327,8 +329,8 @@ TEST(Algorithms, SayNoMoreThanTheyMay) {
   for (const Algorithm* algorithm : all_algorithms()) {
     if (!algorithm->make) continue;
     const auto own = started(algorithm->name, nav_setup(4, 0, {0, 0}, 2));
-    own->moved(nav_second, {1, 0}, 0.1 * Matrix2::Identity());
-    EXPECT_LE(own->say(nav_second, 118).size(), 118U) << algorithm->name;
+    own->predict(nav_second, {1, 0}, 0.1 * Matrix2::Identity());
+    EXPECT_LE(own->make_payload(nav_second, 118).size(), 118U) << algorithm->name;
   }
 }
 

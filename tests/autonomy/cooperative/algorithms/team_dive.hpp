@@ -86,7 +86,7 @@ inline DiveScore run_dive(const TeamDive& dive, const std::string& algorithm, in
         Matrix2 q = along * along * ahead * ahead.transpose() + across * across * left * left.transpose();
         p += v;
         if (i == craft) q = 100 * Matrix2::Identity();  // its position is that of the last fix
-        team ? team->moved(i, now, measured, q) : own[static_cast<std::size_t>(i)]->moved(now, measured, q);
+        team ? team->predict(i, now, measured, q) : own[static_cast<std::size_t>(i)]->predict(now, measured, q);
         if (i != craft) continue;
         const Vector2 fix = p + Vector2(random.gaussian(), random.gaussian());
         team ? team->fix(i, now, fix, 1) : own[static_cast<std::size_t>(i)]->fix(now, fix, 1);
@@ -98,19 +98,19 @@ inline DiveScore run_dive(const TeamDive& dive, const std::string& algorithm, in
           if (team)
             team->sent(sender, now);
           else
-            payload = own[static_cast<std::size_t>(sender)]->say(now, dive.payload_bytes);
+            payload = own[static_cast<std::size_t>(sender)]->make_payload(now, dive.payload_bytes);
           for (int i = 0; i < auvs; ++i) {
             const bool lost = random.uniform() < dive.loss;
             const double noise_m = dive.range_std_m * random.gaussian();
             if (i == sender || lost || (sender == craft && dive.only_first_hears_the_craft && i > 0)) continue;
-            Heard heard;
-            heard.toa = heard.tol = heard.payload_time = now;
-            heard.sender = sender;
-            heard.range_m =
+            ReceivedRange received;
+            received.toa = received.tol = received.payload_time = now;
+            received.sender = sender;
+            received.range_m =
                 (truth[static_cast<std::size_t>(i)] - truth[static_cast<std::size_t>(sender)]).norm() + noise_m;
-            heard.std_m = dive.range_std_m;
-            heard.payload = payload;
-            team ? team->heard(i, heard) : own[static_cast<std::size_t>(i)]->heard(heard);
+            received.std_m = dive.range_std_m;
+            received.payload = payload;
+            team ? team->on_range(i, received) : own[static_cast<std::size_t>(i)]->on_range(received);
           }
         }
       }

@@ -64,25 +64,25 @@ TEST(NavFrame, HasAsManySightsAsThereIsRoomFor) {
   NavFrame sent;
   sent.payload_time = noon;
   sent.payload = {1, 2, 3};
-  for (int i = 0; i < 3; ++i) sent.sights.push_back({i, 250'400, {-12.344 - i, 4000.5}});
+  for (int i = 0; i < 3; ++i) sent.relatives.push_back({i, 250'400, {-12.344 - i, 4000.5}});
   // 10 bytes of the frame, 3 of the payload, the number, and 9 of each.
-  const auto sights_of = [&](std::size_t frame_bytes) {
-    return decode_frame(encode_frame(sent, frame_bytes), noon)->sights;
+  const auto relatives_of = [&](std::size_t frame_bytes) {
+    return decode_frame(encode_frame(sent, frame_bytes), noon)->relatives;
   };
-  EXPECT_EQ(sights_of(10 + 3 + 1 + 27).size(), 3U);
-  EXPECT_EQ(sights_of(10 + 3 + 1 + 26).size(), 2U);
-  EXPECT_EQ(sights_of(13).size(), 0U);
-  const NavFrame::Sight sight = sights_of(64).at(1);
-  EXPECT_EQ(sight.other, 1);
-  EXPECT_EQ(sight.age, 250'000);
-  EXPECT_NEAR(sight.d_W.x(), -13.34, 1e-9);
-  EXPECT_NEAR(sight.d_W.y(), 4000.5, 1e-9);
+  EXPECT_EQ(relatives_of(10 + 3 + 1 + 27).size(), 3U);
+  EXPECT_EQ(relatives_of(10 + 3 + 1 + 26).size(), 2U);
+  EXPECT_EQ(relatives_of(13).size(), 0U);
+  const NavFrame::RelativePosition relative = relatives_of(64).at(1);
+  EXPECT_EQ(relative.other, 1);
+  EXPECT_EQ(relative.age, 250'000);
+  EXPECT_NEAR(relative.d_W.x(), -13.34, 1e-9);
+  EXPECT_NEAR(relative.d_W.y(), 4000.5, 1e-9);
   EXPECT_EQ(decode_frame(encode_frame(sent, 64), noon)->payload, sent.payload);
 }
 
 TEST(NavFrame, WithMoreSightsThanItsBytesIsNone) {
   NavFrame sent;
-  sent.payload = {1};  // the number of sights, if the length of the payload were 0
+  sent.payload = {1};  // the number of relative measurements, if the length of the payload were 0
   Bytes bytes = encode_frame(sent, 18);
   bytes[7] = 0;
   bytes.resize(16);

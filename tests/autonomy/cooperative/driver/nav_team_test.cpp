@@ -190,10 +190,10 @@ vehicles:
   NavFrame frame = frame_of_b();
   // Stamps rounded down to 1 ms: 1500 m/s * 1 ms / sqrt(12).
   const double stamps_m = 1.5 / std::sqrt(12.0);
-  EXPECT_NEAR(reports.heard(packet, frame)->heard.std_m, stamps_m, 1e-3);
+  EXPECT_NEAR(reports.range_event(packet, frame)->received.std_m, stamps_m, 1e-3);
   // 300 m away and 150 m above: half of the own error of depth, 20110 Pa or 2 m.
   frame.depth_m = 150;
-  EXPECT_NEAR(reports.heard(packet, frame)->heard.std_m, std::hypot(stamps_m, 0.5 * 2), 1e-3);
+  EXPECT_NEAR(reports.range_event(packet, frame)->received.std_m, std::hypot(stamps_m, 0.5 * 2), 1e-3);
 }
 
 /// A craft with USBL that heads north, and an AUV.
@@ -230,12 +230,12 @@ struct Sighting {
     auv.receive(fix);
     fix.utime = 10'000'000;
     craft.receive(fix);
-    shoal::usbl_t sight{};
-    sight.utime = 10'000'000;
-    sight.target = "auv/transponder";
-    sight.position_m[0] = ahead_m;
-    sight.position_m[2] = -below_m;
-    events = craft.receive(sight);
+    shoal::usbl_t relative{};
+    relative.utime = 10'000'000;
+    relative.target = "auv/transponder";
+    relative.position_m[0] = ahead_m;
+    relative.position_m[2] = -below_m;
+    events = craft.receive(relative);
     shoal::pressure_t pressure{};
     pressure.utime = 10'000'000;
     pressure.depth_m = 40;
@@ -248,7 +248,7 @@ struct Sighting {
     packet.sent_utime = time;
     packet.utime = time - ahead + 50'000;
     packet.travel_time_s = 0.05;
-    return auv.seen_by(packet, craft.frame(time, {7}));
+    return auv.bearing_by(packet, craft.frame(time, {7}));
   }
 
   std::shared_ptr<const NavTeam> team;
@@ -291,7 +291,7 @@ TEST(VehicleReports, AFrameTellsTheVehicleWhereItWasSeen) {
   // In the 0.4 s until the frame the craft went 0.8 m: the AUV was 49.2 m ahead of where it then is.
   const auto event = sighting.sent_at(10'400'000);
   ASSERT_TRUE(event);
-  EXPECT_EQ(event->kind, NavEvent::Kind::saw);
+  EXPECT_EQ(event->kind, NavEvent::Kind::bearing);
   EXPECT_EQ(event->time, 10'000'000);
   EXPECT_EQ(event->payload, Bytes{7});
   EXPECT_EQ(event->seen.payload_time, 10'400'000);
@@ -299,7 +299,7 @@ TEST(VehicleReports, AFrameTellsTheVehicleWhereItWasSeen) {
   EXPECT_TRUE(event->seen.by_other);
   EXPECT_NEAR(event->seen.range_m, 49.2, 1e-9);
   EXPECT_NEAR(event->seen.bearing_rad, -M_PI / 2, 1e-9);
-  // The same sight again is not new.
+  // The same relative measurement again is not new.
   EXPECT_FALSE(sighting.sent_at(11'400'000));
 }
 
@@ -340,21 +340,21 @@ vehicles:
   VehicleReports reports = reports_after_fix(team);
   shoal::acoustic_received_t packet = packet_of_b();
   NavFrame frame = frame_of_b();
-  const auto event = reports.heard(packet, frame);
+  const auto event = reports.range_event(packet, frame);
   ASSERT_TRUE(event);
-  EXPECT_NEAR(event->heard.range_m, 0.2 * team->sound.mean_speed_mps(0, 0), 1e-9);
-  EXPECT_EQ(event->heard.std_m, VehicleReports::min_range_std_m);
+  EXPECT_NEAR(event->received.range_m, 0.2 * team->sound.mean_speed_mps(0, 0), 1e-9);
+  EXPECT_EQ(event->received.std_m, VehicleReports::min_range_std_m);
   frame.payload_time = 9'000'000;  // said a second before
-  EXPECT_FALSE(reports.heard(packet, frame));
+  EXPECT_FALSE(reports.range_event(packet, frame));
   frame.payload_time = 10'000'000;
   packet.source = "gateway";
-  EXPECT_FALSE(reports.heard(packet, frame));
+  EXPECT_FALSE(reports.range_event(packet, frame));
   packet.source = "b";
   packet.travel_time_s = 61;
-  EXPECT_FALSE(reports.heard(packet, frame));
+  EXPECT_FALSE(reports.range_event(packet, frame));
   packet.travel_time_s = 0.2;
   frame.sender = 0;
-  EXPECT_FALSE(reports.heard(packet, frame));
+  EXPECT_FALSE(reports.range_event(packet, frame));
 }
 
 }  // namespace

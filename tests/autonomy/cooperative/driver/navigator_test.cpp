@@ -11,9 +11,9 @@
 namespace {
 
 using namespace navigation;
-using test::heard_from;
 using test::nav_second;
 using test::nav_setup;
+using test::received_from;
 
 NavEvent moved_at(Time time, const Vector2& v_W) {
   NavEvent event;
@@ -24,11 +24,11 @@ NavEvent moved_at(Time time, const Vector2& v_W) {
 }
 
 NavEvent heard_at(Time time, double range_m) {
-  static const Bytes payload = test::started("naive", nav_setup(2, 1, {-300, 0}, 1))->say(0, 100);
+  static const Bytes payload = test::started("naive", nav_setup(2, 1, {-300, 0}, 1))->make_payload(0, 100);
   NavEvent event;
-  event.kind = NavEvent::Kind::heard;
+  event.kind = NavEvent::Kind::received;
   event.time = time;
-  event.heard = heard_from(1, {}, range_m, 1, time);
+  event.received = received_from(1, {}, range_m, 1, time);
   event.payload = payload;
   return event;
 }
@@ -79,7 +79,7 @@ TEST(Navigator, EventsFromBeforeItsWindowAreDropped) {
 TEST(Navigator, SaysWhereItWillBeWhenTheModemTransmits) {
   Navigator navigator(algorithm_named("naive"), nav_setup(2, 0, {0, 0}, 1));
   navigator.add(moved_at(nav_second, {2, 0}));
-  const Bytes payload = navigator.say(3 * nav_second / 2, 100);
+  const Bytes payload = navigator.make_payload(3 * nav_second / 2, 100);
   PayloadReader reader(payload);
   EXPECT_NEAR(read_position(reader)->p_W.x(), 3, 1e-9);
   // Motions that are reported afterwards, for before that time, come in between.
@@ -109,8 +109,8 @@ TEST(TeamNavigator, CallsInTheOrderOfTimes) {
     calls.push_back([](TeamNavigator& team) { team.sent(0, 10 * nav_second + 7000, 10 * nav_second + 7000); });
     calls.push_back([](TeamNavigator& team) {
       NavEvent event = heard_at(10 * nav_second + 200'000, 291);
-      event.heard.sender = 0;
-      event.heard.payload_time = 10 * nav_second + 7000;
+      event.received.sender = 0;
+      event.received.payload_time = 10 * nav_second + 7000;
       team.add(1, event);
     });
     if (!in_order) std::reverse(calls.begin() + 2, calls.end());
@@ -132,14 +132,14 @@ TEST(TeamNavigator, MovesTheVehicleThatIsSeenToTheTimeOfTheSight) {
   team.start(1, nav_setup(2, 1, {100, 0}, 1e-3));
   for (int i = 1; i <= 2; ++i)
     for (int vehicle : {0, 1}) team.add(vehicle, moved_at(10 * i * nav_second, {vehicle == 1 ? 2.0 : 0.0, 0}));
-  NavEvent sight;
-  sight.kind = NavEvent::Kind::saw;
-  sight.time = 15 * nav_second;
-  sight.seen.time = sight.time;
-  sight.seen.other = 1;
-  sight.seen.range_m = 130;  // 100 + 2 * 15
-  sight.seen.range_std_m = sight.seen.bearing_std_rad = 1e-3;
-  team.add(0, sight);
+  NavEvent relative;
+  relative.kind = NavEvent::Kind::bearing;
+  relative.time = 15 * nav_second;
+  relative.seen.time = relative.time;
+  relative.seen.other = 1;
+  relative.seen.range_m = 130;  // 100 + 2 * 15
+  relative.seen.range_std_m = relative.seen.bearing_std_rad = 1e-3;
+  team.add(0, relative);
   Estimate estimate;
   team.query(1, 20 * nav_second, [&](const Estimate& answer) { estimate = answer; });
   team.run(*algorithm_named("cekf").make_team());

@@ -46,7 +46,7 @@ class LandOffline : public testing::Test {
   }
   static constexpr std::int64_t second = 1'000'000;
 
-  void sight(int time_s) {
+  void relative(int time_s) {
     shoal::swarm_position_t seen{};
     seen.utime = time_s * second;
     seen.count = 1;
@@ -97,7 +97,7 @@ TEST_F(LandOffline, TheFilterOfTheRoversIsForLandOnly) {
 }
 
 TEST_F(LandOffline, ASightHasThePayloadOfThatInstantWithoutRadio) {
-  for (int t = 1; t <= end_s; ++t) sight(t);
+  for (int t = 1; t <= end_s; ++t) relative(t);
   const double dr_m = error_m(run("dr"));
   for (const char* algorithm : {"naive", "luft", "cekf"}) {
     const OfflineRun all = run(algorithm);
@@ -109,7 +109,7 @@ TEST_F(LandOffline, ASightHasThePayloadOfThatInstantWithoutRadio) {
 }
 
 TEST_F(LandOffline, ASightAfterAMessageHasItsPayloadMovedByWhatTheSenderTraveled) {
-  for (int t = 1; t <= end_s; ++t) sight(t);
+  for (int t = 1; t <= end_s; ++t) relative(t);
   for (int t = 0; t < end_s; ++t) message(t);
   const OfflineRun naive = run("naive");
   EXPECT_EQ(naive.frames_said, end_s);
@@ -118,7 +118,7 @@ TEST_F(LandOffline, ASightAfterAMessageHasItsPayloadMovedByWhatTheSenderTraveled
 }
 
 TEST_F(LandOffline, WithoutMessagesToASightItHasNoPayload) {
-  for (int t = 1; t <= end_s; ++t) sight(t);
+  for (int t = 1; t <= end_s; ++t) relative(t);
   record_.has_radio = true;
   EXPECT_EQ(run("naive").frames_said, 0);
   EXPECT_DOUBLE_EQ(error_m(run("naive")), error_m(run("dr")));
@@ -126,13 +126,13 @@ TEST_F(LandOffline, WithoutMessagesToASightItHasNoPayload) {
 }
 
 TEST_F(LandOffline, SightsThatAreFarTooWrongAreRefusedAlsoInABurst) {
-  for (int t = 1; t <= end_s; ++t) sight(t);
+  for (int t = 1; t <= end_s; ++t) relative(t);
   const std::vector<std::string> algorithms = {"naive", "ci", "luft", "cekf"};
   std::vector<double> right_m;
   for (const std::string& algorithm : algorithms) right_m.push_back(error_m(run(algorithm)));
   // Robot 1 takes something 9 m to its left for robot 2, ten times a second as cameras do.
   for (int i = 0; i < 10; ++i) {
-    sight(31);
+    relative(31);
     std::get<shoal::swarm_position_t>(record_.items.back().message).relative_m[0][1] = 9;
   }
   for (std::size_t i = 0; i < algorithms.size(); ++i)
@@ -140,7 +140,7 @@ TEST_F(LandOffline, SightsThatAreFarTooWrongAreRefusedAlsoInABurst) {
 }
 
 TEST_F(LandOffline, ARunIsTheSameAgain) {
-  for (int t = 1; t <= end_s; t += 3) sight(t);
+  for (int t = 1; t <= end_s; t += 3) relative(t);
   for (const char* algorithm : {"ci", "luft"}) {
     const OfflineRun first = run(algorithm), second_run = run(algorithm);
     for (std::size_t i = 0; i < first.estimates[0].size(); ++i) {

@@ -12,9 +12,9 @@
 namespace {
 
 using namespace navigation;
-using test::heard_from;
 using test::nav_second;
 using test::nav_setup;
+using test::received_from;
 using test::started;
 
 std::string error_of(const std::string& algorithm) {
@@ -51,13 +51,13 @@ TEST(PythonEstimator, TheExampleIsTheNaiveFilter) {
                           .clock_drift = 1e-6,
                           .clock_walk_srts = 1e-6};
   const auto python = started(example, setup), cpp = started("naive", setup);
-  const Bytes payload = started("naive", nav_setup(2, 1, {-300, 50}, 3))->say(0, 100);
+  const Bytes payload = started("naive", nav_setup(2, 1, {-300, 50}, 3))->make_payload(0, 100);
   for (Estimator* each : {python.get(), cpp.get()}) {
     Matrix2 q;
     q << 0.2, 0.05, 0.05, 0.1;
-    each->moved(10 * nav_second, {1, -0.5}, q);
-    each->heard(heard_from(1, payload, 325, 1, 10 * nav_second));
-    each->moved(20 * nav_second, {1, -0.5}, q);
+    each->predict(10 * nav_second, {1, -0.5}, q);
+    each->on_range(received_from(1, payload, 325, 1, 10 * nav_second));
+    each->predict(20 * nav_second, {1, -0.5}, q);
     each->fix(20 * nav_second, {31, 9}, 2);
   }
   const Estimate a = python->now(21 * nav_second), b = cpp->now(21 * nav_second);
@@ -65,14 +65,14 @@ TEST(PythonEstimator, TheExampleIsTheNaiveFilter) {
       (a.p_W - b.p_W).norm(),
       0.01);  // the other one turns velocities by sine and cosine, and adds the variance of the bend, 3 (5 / 650)^2 m^2
   EXPECT_LT((a.P - b.P).norm(), 0.01);
-  EXPECT_EQ(python->say(20 * nav_second, 100).size(), position_bytes);
+  EXPECT_EQ(python->make_payload(20 * nav_second, 100).size(), position_bytes);
 }
 
 TEST(PythonEstimator, ACopyIsIndependent) {
   const auto first =
       started("python:" + test_support::source_path("examples/navigation/naive.Naive"), nav_setup(2, 0, {0, 0}, 1));
   const auto copy = first->clone();
-  first->moved(nav_second, {1, 0}, Matrix2::Zero());
+  first->predict(nav_second, {1, 0}, Matrix2::Zero());
   EXPECT_NEAR(first->now(nav_second).p_W.x(), 1, 1e-12);
   EXPECT_NEAR(copy->now(0).p_W.x(), 0, 1e-12);
 }
@@ -157,10 +157,10 @@ TEST(PythonEstimator, AClassThatNeverReturnsIsSaidAfterTheLimit) {
             std::string::npos);
   // One that takes no calls: they fill the pipe, of 64 kB.
   const auto stuck =
-      started(python_with(folder, "m", start + "  def moved(self, t, v, q): " + sleep), nav_setup(2, 0, {0, 0}, 1));
+      started(python_with(folder, "m", start + "  def predict(self, t, v, q): " + sleep), nav_setup(2, 0, {0, 0}, 1));
   EXPECT_THROW(
       {
-        for (int i = 1; i < 10'000; ++i) stuck->moved(i * nav_second, {1, 0}, Matrix2::Zero());
+        for (int i = 1; i < 10'000; ++i) stuck->predict(i * nav_second, {1, 0}, Matrix2::Zero());
       },
       std::invalid_argument);
 }
@@ -203,14 +203,14 @@ TEST(PythonEstimator, PlainListsAreEnough) {
   const auto own =
       started(python_with(folder, "e",
                           "  def start(self, s): self.x = list(s.position); self.t = s.time\n"
-                          "  def moved(self, t, v, q): self.x[0] += v[0] * (t - self.t); self.t = t; print('moved')\n"
-                          "  def say(self, t, max_bytes): return bytes([1, 2, max_bytes])\n"
+                          "  def predict(self, t, v, q): self.x[0] += v[0] * (t - self.t); self.t = t; print('moved')\n"
+                          "  def make_payload(self, t, max_bytes): return bytes([1, 2, max_bytes])\n"
                           "  def now(self, t): return self.x, [[1, 0], [0, 1]]\n"),
               nav_setup(2, 0, {5, 0}, 1));
-  own->moved(2 * nav_second, {1, 0}, Matrix2::Zero());
-  own->saw({});
+  own->predict(2 * nav_second, {1, 0}, Matrix2::Zero());
+  own->on_bearing({});
   EXPECT_NEAR(own->now(2 * nav_second).p_W.x(), 7, 1e-9);
-  EXPECT_EQ(own->say(2 * nav_second, 22), (Bytes{1, 2, 22}));
+  EXPECT_EQ(own->make_payload(2 * nav_second, 22), (Bytes{1, 2, 22}));
 }
 
 }  // namespace
