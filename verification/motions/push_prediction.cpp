@@ -14,7 +14,7 @@ namespace {
 
 constexpr double longest_play_s = 600;
 constexpr double two_pi = 2 * std::numbers::pi;
-constexpr double pose_settle_s = 0.5;        // of a held pose
+constexpr double hold_s = 0.5;               // of a held pose
 constexpr double fallen_displacement_m = 1;  // displacement of a pose that falls
 
 /// Plays a motion to its end and some time more.  Returns whether it has fallen.
@@ -44,7 +44,7 @@ sim::JointMotion held_pose(const sim::JointMotion& motion, double at_s) {
 /// Returns the greatest displacement after a push of a pose that is held, over all directions, m.
 double static_displacement_m(const StageOptions& options, const sim::JointMotion& pose, const PushOptions& push) {
   MotionStage stage(options, pose);
-  if (falls_by_itself(stage, pose_settle_s)) return fallen_displacement_m;
+  if (falls_by_itself(stage, hold_s)) return fallen_displacement_m;
   // The first push is none, for comparison.
   std::vector<Push> pushes(1, {stage.now_s(), 0, 0});
   for (int i = 0; i < push.directions; ++i)

@@ -55,7 +55,8 @@ bool add_family(std::string prefix, std::function<Algorithm(const std::string& r
 
 /// Whether an estimator has a on_bearing() of its own.
 template <class Type>
-inline constexpr bool has_own_saw = !std::is_same_v<decltype(&Type::saw), void (Estimator::*)(const Relative&)>;
+inline constexpr bool has_own_on_bearing =
+    !std::is_same_v<decltype(&Type::on_bearing), void (Estimator::*)(const Relative&)>;
 
 /// Whether an estimator uses ranges by sound: unless it has `static constexpr bool at_sea = false`.
 template <class Type>
@@ -74,7 +75,7 @@ constexpr bool is_at_sea() {
                                            Type::meaning,                           \
                                            [] { return std::make_unique<Type>(); }, \
                                            {},                                      \
-                                           ::navigation::has_own_saw<Type>,         \
+                                           ::navigation::has_own_on_bearing<Type>,  \
                                            ::navigation::is_at_sea<Type>()})
 
 /// Registers a TeamEstimator.

@@ -38,12 +38,12 @@ class OdometryTrack {
 /// What happened to the vehicles of a record, in the order of time, without their motion.  Times are simulated ones;
 /// the clocks of the vehicles are taken as right.
 struct LandEvent {
-  enum class Kind { fix, saw, sent, received };
+  enum class Kind { fix, bearing, sent, received };
   Kind kind = Kind::fix;
   Time time = 0;
   int vehicle = 0;
   Vector2 p_W = Vector2::Zero();  ///< fix, of the vehicle's origin
-  Relative seen;                  ///< saw: without payload
+  Relative seen;                  ///< bearing: without payload
   std::size_t message = 0;        ///< sent, received: number of the message of the record, from 0 on
 };
 

@@ -7,7 +7,7 @@
 
 namespace {
 
-using namespace command_line;
+using namespace sim;
 
 TEST(TextLayout, FillsLinesUpToTheWidthAndIndentsTheRest) {
   EXPECT_EQ(wrapped("one two three four", 9, 2), "one two\n  three\n  four");
