@@ -34,8 +34,14 @@ const std::map<std::string, std::set<std::string>> layers = {
     {"messages", {"messages", "sim"}},
     {"devices", {"devices", "messages", "sim"}},
     {"bridges", {"bridges", "messages", "sim"}},
-    {"tools", {"tools", "bridges", "devices", "messages", "sim"}},
-    {"python", {"python", "tools", "bridges", "devices", "messages", "sim"}},
+    {"experiment", {"experiment", "bridges", "devices", "messages", "sim"}},
+    {"autonomy", {"autonomy", "experiment", "bridges", "devices", "messages", "sim"}},
+    {"viewer", {"viewer", "experiment", "bridges", "devices", "messages", "sim"}},
+    {"motion", {"motion", "viewer", "experiment", "bridges", "devices", "messages", "sim"}},
+    {"verification", {"verification", "motion", "autonomy", "experiment", "bridges", "devices", "messages", "sim"}},
+    {"tools",
+     {"tools", "verification", "motion", "viewer", "autonomy", "experiment", "bridges", "devices", "messages", "sim"}},
+    {"python", {"python", "experiment", "bridges", "devices", "messages", "sim"}},
 };
 
 std::string top_of(const std::string& path) {
