@@ -39,6 +39,12 @@ void MetricConfig::read(ParamReader& in) {
   in.require("name");
   in.read_name("name", name,
                "name of the metric; gives NAME.FIGURE for each figure of its type, see docs/guides/scoring.md");
+  if (!in.describing() && !in.has("type")) {
+    in.error("missing key 'type'; types: " + list_text(registry.words()));
+    // Further errors, of keys and of rules that name its figures, would obscure this one.
+    for (const ConfigNode::Entry& entry : in.node()->entries) in.child(entry.key.c_str());
+    return;
+  }
   std::string type;
   in.require("type");
   in.read_one_of("type", type, registry.words(), "type of the metric");

@@ -19,8 +19,7 @@ TEST(DidYouMean, FindsANameWithoutItsUnitAndWithAnother) {
   EXPECT_EQ(did_you_mean("speed_limit", {"speed_mps"}), "") << "'limit' is not a unit";
 }
 
-TEST(DidYouMean, KnowsFormerNamesAndWordsOfOtherSimulators) {
-  EXPECT_EQ(did_you_mean("lean", {"distance", "tilt"}), "; write 'tilt'");
+TEST(DidYouMean, KnowsWordsOfOtherSimulators) {
   EXPECT_EQ(did_you_mean("revolute", {"hinge", "slider"}), "; did you mean 'hinge'?");
   EXPECT_EQ(did_you_mean("revolute", {"box"}), "");
   EXPECT_EQ(did_you_mean("yaw", {"name", "position_m", "rpy_deg"}), "; did you mean 'rpy_deg'?");
