@@ -20,7 +20,7 @@
 #include "experiment/snapshot/run_identity.hpp"
 #include "sim/config/config_node.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -275,4 +275,4 @@ BugReport write_bug_report(const BugOptions& options) {
   return BugPacker(options).pack();
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 struct BugOptions {
   std::string directory;     ///< results of the run
@@ -29,4 +29,4 @@ struct BugReport {
 /// written.
 BugReport write_bug_report(const BugOptions& options);
 
-}  // namespace tools
+}  // namespace experiment

@@ -6,7 +6,7 @@
 
 #include "experiment/study/study_runs.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Options of the engines that execute runs by `shoal study run DIR --index ...` in other processes.
 struct EngineOptions {
@@ -48,4 +48,4 @@ std::string slurm_pattern(const std::string& path);
 /// Name of the jobs of a study in Slurm.
 std::string slurm_job_name(const std::string& directory);
 
-}  // namespace tools
+}  // namespace experiment

@@ -18,7 +18,7 @@
 #include "experiment/run/version.hpp"
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -250,4 +250,4 @@ std::string indices_text(const std::vector<std::size_t>& indices) {
   return text;
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -9,7 +9,7 @@
 
 #include "experiment/study/study_runs.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Line of a manifest: a planned run.
 struct ManifestRun {
@@ -78,4 +78,4 @@ std::vector<std::size_t> parse_indices(const std::string& text, std::size_t size
 /// Returns the text that parse_indices() parses, with ranges; `indices` from 0, in ascending order.
 std::string indices_text(const std::vector<std::size_t>& indices);
 
-}  // namespace tools
+}  // namespace experiment

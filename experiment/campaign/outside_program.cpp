@@ -19,7 +19,7 @@
 #include "experiment/process/signals.hpp"
 #include "experiment/results/run_record.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -78,4 +78,4 @@ std::string own_program() {
   return std::filesystem::canonical("/proc/self/exe").string();
 }
 
-}  // namespace tools
+}  // namespace experiment

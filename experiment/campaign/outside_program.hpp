@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 /// Result of a program that was run to its end.
 struct ProgramOutput {
@@ -24,4 +24,4 @@ int run_outside_program(const std::vector<std::string>& arguments);
 /// Absolute path of this program.
 std::string own_program();
 
-}  // namespace tools
+}  // namespace experiment

@@ -14,7 +14,7 @@
 #include "experiment/process/shell_word.hpp"
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace fs = std::filesystem;
 
@@ -104,4 +104,4 @@ void run_by_parallel(const LoadedStudy& study, const EngineOptions& options, std
   for (const std::size_t i : missing) read_result(study, options.study.any_version, runs[i]);
 }
 
-}  // namespace tools
+}  // namespace experiment

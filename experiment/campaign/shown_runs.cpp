@@ -14,7 +14,7 @@
 #include "experiment/study/study_results.hpp"
 #include "experiment/study/study_tables.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -60,4 +60,4 @@ void show_extreme_runs(const LoadedStudy& study, const std::vector<StudyRun>& ru
   }
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -6,7 +6,7 @@
 
 #include "experiment/study/study_runs.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Executes the runs with the greatest and smallest figures of a study again, with a record, and writes the page of
 /// each in DIRECTORY/shown/run_N: run.html, which the page of the study links to.  Pages of equal runs are kept.  A run
@@ -14,4 +14,4 @@ namespace tools {
 void show_extreme_runs(const LoadedStudy& study, const std::vector<StudyRun>& runs, const std::string& directory,
                        const std::vector<std::string>& allow_paths);
 
-}  // namespace tools
+}  // namespace experiment

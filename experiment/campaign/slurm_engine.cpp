@@ -20,7 +20,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/random/random.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -195,4 +195,4 @@ void run_by_slurm(const LoadedStudy& study, const EngineOptions& options, std::v
   }
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -17,7 +17,7 @@
 #include "experiment/study/study_rules.hpp"
 #include "experiment/study/study_tables.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -188,4 +188,4 @@ void write_database(const std::string& path, const StudyResults& results) {
   database.finish();
 }
 
-}  // namespace tools
+}  // namespace experiment

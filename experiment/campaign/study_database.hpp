@@ -5,7 +5,7 @@
 
 #include "experiment/study/study_results.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Writes the results of a study into an SQLite database: tables `study`, `runs`, `figures` (a row for each figure of
 /// each run), `factors` (a row for each factor of each point; numbers as numbers), `statistics` and `comparisons`.  A
@@ -13,4 +13,4 @@ namespace tools {
 /// std::runtime_error.
 void write_database(const std::string& path, const StudyResults& results);
 
-}  // namespace tools
+}  // namespace experiment

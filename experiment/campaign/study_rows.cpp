@@ -11,7 +11,7 @@
 
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -137,4 +137,4 @@ std::vector<StudyRow> parse_study_rows(const std::string& text, const std::strin
   return rows;
 }
 
-}  // namespace tools
+}  // namespace experiment

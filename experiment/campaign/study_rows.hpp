@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 /// Row of study.csv: the result of a run, perhaps of someone else.
 struct StudyRow {
@@ -28,4 +28,4 @@ std::optional<std::vector<std::string>> csv_fields(std::string_view line);
 /// with line, column and rule.
 std::vector<StudyRow> parse_study_rows(const std::string& text, const std::string& name);
 
-}  // namespace tools
+}  // namespace experiment

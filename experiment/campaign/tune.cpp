@@ -17,7 +17,7 @@
 #include "experiment/study/study_rules.hpp"
 #include "experiment/study/study_tables.hpp"
 
-namespace tools {
+namespace experiment {
 
 Tuning::Tuning(LoadedStudy study, TuneOptions options) : study_(std::move(study)), options_(std::move(options)) {
   const sim::SourcePlace place{sim::intern_file_name(study_.config.file), 0, 0};
@@ -145,4 +145,4 @@ std::vector<double> ranked_values(const std::vector<TunedPoint>& points, bool ma
   return ranked;
 }
 
-}  // namespace tools
+}  // namespace experiment

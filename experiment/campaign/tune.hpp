@@ -8,7 +8,7 @@
 
 #include "experiment/study/study_runs.hpp"
 
-namespace tools {
+namespace experiment {
 
 struct TuneOptions {
   StudyOptions study;
@@ -64,4 +64,4 @@ class Tuning {
 /// of their world below those with fewer, and those of points without a value below all others.
 std::vector<double> ranked_values(const std::vector<TunedPoint>& points, bool maximize);
 
-}  // namespace tools
+}  // namespace experiment

@@ -14,7 +14,7 @@
 #include "experiment/study/study_tables.hpp"
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -188,4 +188,4 @@ std::size_t verify_runs(const LoadedStudy& study, const StudyOptions& options, s
   return which.size() - equal_runs;
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -7,7 +7,7 @@
 #include "experiment/campaign/study_rows.hpp"
 #include "experiment/study/study_runs.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Comparison of a run with a row of a study.csv.
 struct Verified {
@@ -34,4 +34,4 @@ struct VerifiedTable {
 VerifiedTable compare_with_table(const LoadedStudy& study, const std::vector<StudyRow>& rows, const std::string& text,
                                  const std::string& name, const std::vector<std::string>& cases);
 
-}  // namespace tools
+}  // namespace experiment

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiment/drive/drive_profile.hpp"
 
-namespace tools {
+namespace experiment {
 
 std::string_view default_drive_profile() {
   return R"(# Profile of `shoal drive` and of the live page; docs/guides/drive.md.
@@ -72,4 +72,4 @@ programs:
 )";
 }
 
-}  // namespace tools
+}  // namespace experiment

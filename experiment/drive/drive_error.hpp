@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-namespace tools {
+namespace experiment {
 
 /// Error of a vehicle that cannot be driven as asked, or of a gamepad.
 class DriveError : public std::runtime_error {
@@ -11,4 +11,4 @@ class DriveError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-}  // namespace tools
+}  // namespace experiment

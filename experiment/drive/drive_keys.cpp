@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tools {
+namespace experiment {
 
 DriveKeys::Effect DriveKeys::press(const std::string& key) {
   if (key.empty()) return Effect::none;
@@ -24,4 +24,4 @@ DriveKeys::Effect DriveKeys::press(const std::string& key) {
   return Effect::none;
 }
 
-}  // namespace tools
+}  // namespace experiment

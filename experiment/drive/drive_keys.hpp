@@ -5,7 +5,7 @@
 
 #include "experiment/drive/drive_profile.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Set positions of the axes, moved by keys.
 class DriveKeys {
@@ -25,4 +25,4 @@ class DriveKeys {
   DriveValues values_;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -22,7 +22,7 @@
 #include "shoal/wrench_t.hpp"
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -304,4 +304,4 @@ sim::Bytes DriveMapping::helm_payload(const DriveValues& values, std::int64_t ut
   return stamped(command, utime);
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -10,7 +10,7 @@
 #include "shoal/sim_vehicle_t.hpp"
 #include "sim/bus/bus.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Device of a vehicle.
 struct DrivenDevice {
@@ -105,4 +105,4 @@ class DriveMapping {
   bool turned_ = false, dived_ = false;  // the last helm command had a set point ahead
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -174,4 +174,4 @@ DriveProfile read_drive_profile(const std::string& file) {
   return profile_in(sim::load_config_file(file, diagnostics), diagnostics);
 }
 
-}  // namespace tools
+}  // namespace experiment

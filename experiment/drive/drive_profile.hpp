@@ -11,7 +11,7 @@
 #include "sim/base/math.hpp"
 #include "sim/config/param_reader.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Ways of driving a vehicle.
 enum class DriveKind {
@@ -142,4 +142,4 @@ DriveProfile read_drive_profile(const std::string& file);
 /// Reads the text of a profile.  Throws sim::ConfigError.
 DriveProfile parse_drive_profile(const std::string& text, const std::string& name);
 
-}  // namespace tools
+}  // namespace experiment

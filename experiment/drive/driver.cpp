@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiment/drive/driver.hpp"
 
-namespace tools {
+namespace experiment {
 
 void Driver::hold(const DriveValues& values, Clock::time_point now) {
   // The first command, and a change of one, is due at once.
@@ -27,4 +27,4 @@ std::vector<DriveCommand> Driver::due(Clock::time_point now, std::int64_t utime,
   return mapping_.commands({}, utime, pose);
 }
 
-}  // namespace tools
+}  // namespace experiment

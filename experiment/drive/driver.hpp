@@ -8,7 +8,7 @@
 
 #include "experiment/drive/drive_mapping.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Driver of one vehicle: dead-man switch, watchdog and rate of its commands.  The vehicle moves only while signs of
 /// life come; it gets its safe command at once when it is released, and `hold_s` after the last sign otherwise.  The
@@ -49,4 +49,4 @@ class Driver {
   Clock::time_point sign_{}, next_{};
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace tools {
+namespace experiment {
 
 void Gamepad::set_range(int code, double low, double high) {
   if (low < high) ranges_[code] = {low, high};
@@ -50,4 +50,4 @@ bool Gamepad::take_next_joint() {
   return std::exchange(next_joint_, false);
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -7,7 +7,7 @@
 #include "experiment/drive/drive_profile.hpp"
 #include "experiment/drive/input_events.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// State of a gamepad after its events.
 class Gamepad {
@@ -35,4 +35,4 @@ class Gamepad {
   bool holds_ = false, next_joint_ = false;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -6,7 +6,7 @@
 #include "experiment/drive/gamepad.hpp"
 #include "experiment/drive/input_device.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Gamepad at /dev/input/eventX.
 class GamepadDevice {
@@ -28,4 +28,4 @@ class GamepadDevice {
   Gamepad& gamepad_;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -13,7 +13,7 @@
 
 #include "experiment/drive/drive_error.hpp"
 
-namespace tools {
+namespace experiment {
 
 InputDevice::InputDevice(const std::string& path)
     : path_(path), file_(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
@@ -48,4 +48,4 @@ bool InputDevice::read(const std::function<void(const InputEvent&)>& take) {
   }
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -9,7 +9,7 @@
 #include "bridges/base/file_descriptor.hpp"
 #include "experiment/drive/input_events.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Keyboard or gamepad at /dev/input/eventX.
 class InputDevice {
@@ -28,4 +28,4 @@ class InputDevice {
   InputEventReader reader_;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -6,7 +6,7 @@
 
 #include "experiment/drive/drive_error.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -89,4 +89,4 @@ std::vector<std::byte> bytes_of(const InputEvent& event) {
   return bytes;
 }
 
-}  // namespace tools
+}  // namespace experiment

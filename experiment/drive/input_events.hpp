@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 /// Event of an input device of Linux (linux/input.h): a button, an axis, or the end of a report.
 struct InputEvent {
@@ -50,4 +50,4 @@ std::vector<InputEvent> read_input_events(const std::string& file);
 /// Returns the bytes of an event, as the reader takes them.
 std::vector<std::byte> bytes_of(const InputEvent& event);
 
-}  // namespace tools
+}  // namespace experiment

@@ -15,7 +15,7 @@
 
 #include "sim/config/diagnostics.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -138,4 +138,4 @@ void replace_file(const std::string& path, const std::string& before, const std:
   file.take_place();
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace tools {
+namespace experiment {
 
 /// Replaces `before`, the content of the file, by `after`.  The new file is written beside the old one, with its owner
 /// and permissions, flushed to the disk, and renamed.  A symbolic link is kept; its target is replaced. Throws
@@ -19,4 +19,4 @@ void write_whole_file(const std::string& path, const std::string& text);
 /// Throws std::runtime_error when write_whole_file() would fail now; for errors before a long work.  Changes nothing.
 void check_whole_file(const std::string& path);
 
-}  // namespace tools
+}  // namespace experiment

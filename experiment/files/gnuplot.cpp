@@ -14,7 +14,7 @@
 
 extern char** environ;
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -89,4 +89,4 @@ bool run_gnuplot(const std::string& directory, const std::string& script, std::c
   return false;
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 /// Returns a text as a gnuplot string.  Content is never executed, because the names of a world are untrusted.
 std::string gnuplot_text(const std::string& text);
@@ -21,4 +21,4 @@ std::string axis_of_errors(const std::vector<double>& errors_m);
 bool run_gnuplot(const std::string& directory, const std::string& script, std::chrono::milliseconds cpu_limit,
                  const std::function<bool()>& give_up);
 
-}  // namespace tools
+}  // namespace experiment

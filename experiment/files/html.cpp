@@ -6,7 +6,7 @@
 
 #include "sim/config/utf8.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -128,4 +128,4 @@ std::string html_page(const std::string& title, const std::string& body) {
          "</main>\n</body>\n</html>\n";
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 /// Escapes text for HTML or for an attribute in double quotes.  Markup is written as entities; control characters and
 /// invalid UTF-8 become U+FFFD.
@@ -22,4 +22,4 @@ std::string html_details(const std::string& summary, const std::string& body);
 /// Returns a self-contained page: `body` is HTML.
 std::string html_page(const std::string& title, const std::string& body);
 
-}  // namespace tools
+}  // namespace experiment

@@ -7,7 +7,7 @@
 
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace experiment {
 
 using Json = nlohmann::ordered_json;
 
@@ -35,4 +35,4 @@ Json parse_json(const std::string& text, const std::string& file) {
   }
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace tools {
+namespace experiment {
 
 /// Returns a value as JSON for an error, shortened and printable.
 std::string shown_json(const nlohmann::ordered_json& value);
@@ -64,4 +64,4 @@ inline double number_or_nan(const nlohmann::ordered_json& value) {
 /// Parses a file.  Throws std::runtime_error with its name and the reason.
 nlohmann::ordered_json read_json_file(const std::string& path);
 
-}  // namespace tools
+}  // namespace experiment

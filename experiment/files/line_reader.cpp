@@ -8,7 +8,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/config/utf8.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -98,4 +98,4 @@ std::string text_in_quotes(std::string_view text) {
   return "'" + sim::shortened(sim::printable(sim::in_utf8(text))) + "'";
 }
 
-}  // namespace tools
+}  // namespace experiment

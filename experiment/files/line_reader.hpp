@@ -8,7 +8,7 @@
 
 #include "sim/config/diagnostics.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Piece of a line, and its column from 1.
 struct Word {
@@ -48,4 +48,4 @@ class LineReader {
 /// Returns text in quotes for an error: printable and shortened.
 std::string text_in_quotes(std::string_view text);
 
-}  // namespace tools
+}  // namespace experiment

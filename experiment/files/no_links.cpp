@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <filesystem>
 
-namespace tools {
+namespace experiment {
 
 void refuse_links(const std::string& root, const std::string& path) {
   namespace fs = std::filesystem;
@@ -38,4 +38,4 @@ bridges::FileDescriptor make_new_file(const std::string& path) {
   return file;
 }
 
-}  // namespace tools
+}  // namespace experiment

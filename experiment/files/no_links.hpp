@@ -7,7 +7,7 @@
 
 #include "bridges/base/file_descriptor.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Checks of paths below a folder that someone else may have made: a symbolic link there would let this program write
 /// or remove files elsewhere.  The folder itself may be a link, because the user has named it.
@@ -36,4 +36,4 @@ bridges::FileDescriptor make_part_file(const std::string& path, const std::strin
   }
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -6,7 +6,7 @@
 
 #include "sim/base/crc32.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -36,4 +36,4 @@ bool is_whole_png(std::string_view bytes) {
   return false;
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -3,9 +3,9 @@
 
 #include <string_view>
 
-namespace tools {
+namespace experiment {
 
 /// Returns whether the bytes are a PNG file from its signature to its last chunk, in which each checksum is valid.
 bool is_whole_png(std::string_view bytes);
 
-}  // namespace tools
+}  // namespace experiment

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace tools {
+namespace experiment {
 
 /// Temporary directory for files that another program reads; it is removed with its content.
 class ScratchDirectory {
@@ -28,4 +28,4 @@ class ScratchDirectory {
   std::filesystem::path path;
 };
 
-}  // namespace tools
+}  // namespace experiment

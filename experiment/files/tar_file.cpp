@@ -15,7 +15,7 @@
 
 #include "experiment/files/no_links.hpp"
 
-namespace tools {
+namespace experiment {
 
 TarFile::TarFile(const std::string& path) : path_(path), part_(path + ".part"), archive_(archive_write_new()) {
   if (archive_ == nullptr) throw std::bad_alloc();
@@ -92,4 +92,4 @@ void TarFile::finish() {
   if (error) throw std::runtime_error(path_ + ": cannot be written: " + error.message());
 }
 
-}  // namespace tools
+}  // namespace experiment

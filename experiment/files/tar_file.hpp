@@ -8,7 +8,7 @@
 
 struct archive;
 
-namespace tools {
+namespace experiment {
 
 /// Writer of a tar file, compressed by gzip.  The file appears under its name only when it is complete.
 class TarFile {
@@ -36,4 +36,4 @@ class TarFile {
   archive* archive_;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -27,7 +27,7 @@
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -292,4 +292,4 @@ MrclamRecord write_mrclam_record(const MrclamData& data, const std::string& log,
   return ImportedRun(data, log, overwrite).go();
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -5,7 +5,7 @@
 
 #include "experiment/score/trajectory/mrclam_data.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Reads the files of a data set: Barcodes.dat, Landmark_Groundtruth.dat, and for N from 1 on, as long as there is a
 /// RobotN_Groundtruth.dat, RobotN_Odometry.dat and RobotN_Measurement.dat.  Throws sim::ConfigError,
@@ -30,4 +30,4 @@ struct MrclamRecord {
 /// BusError when the file cannot be written or exists, and `overwrite` is not set.
 MrclamRecord write_mrclam_record(const MrclamData& data, const std::string& log, bool overwrite);
 
-}  // namespace tools
+}  // namespace experiment

@@ -29,7 +29,7 @@
 #include "shoal/swarm_position_t.hpp"
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -316,4 +316,4 @@ std::string LogScore::to_json() const {
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -9,7 +9,7 @@
 #include "experiment/score/rule_verdict.hpp"
 #include "sim/world_file/load_world.hpp"
 
-namespace tools {
+namespace experiment {
 
 struct LogScoreOptions {
   std::string log;
@@ -42,4 +42,4 @@ struct LogScore {
 /// or the file.
 LogScore score_log(const LogScoreOptions& options);
 
-}  // namespace tools
+}  // namespace experiment

@@ -13,7 +13,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/world_file/world_config.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -314,4 +314,4 @@ SHOAL_METRIC("bound", BoundMetric);
 
 }  // namespace
 
-}  // namespace tools
+}  // namespace experiment

@@ -8,7 +8,7 @@
 #include "experiment/score/metric_registry.hpp"
 #include "sim/world_file/world_config.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -56,25 +56,27 @@ void BoundRatioMetric::Params::check(const sim::MetricConfig& config, const sim:
                                     [&](const sim::MetricConfig& each) { return each.name == name; });
     return found == world.metrics.end() ? nullptr : found->params.get();
   };
-  const auto* error = dynamic_cast<const EstimateMetric::Params*>(params_of(metric));
-  const sim::MetricParams* limit = params_of(bound);
+  const auto* error = dynamic_cast<const EstimateMetric::Params*>(experiment::params_of(metric));
+  const sim::MetricParams* limit = experiment::params_of(bound);
   if (error == nullptr || limit == nullptr) return;
   const auto refuse = [&](const std::string& text) {
     diagnostics.error(config.place, "metric '" + config.name + "'", text);
   };
   if (error->vehicle != limit->vehicle)
-    refuse(fmt::format("'{}' and '{}' must be of the same vehicle, got '{}' and '{}'", metric, bound, error->vehicle,
-                       limit->vehicle));
+    viewer::refuse(fmt::format("'{}' and '{}' must be of the same vehicle, got '{}' and '{}'", metric, bound,
+                               error->vehicle, limit->vehicle));
   if (error->from_s != limit->from_s)
-    refuse(fmt::format("'{}' and '{}' must have the same 'from_s', got {:.6g} and {:.6g}", metric, bound, error->from_s,
-                       limit->from_s));
+    viewer::refuse(fmt::format("'{}' and '{}' must have the same 'from_s', got {:.6g} and {:.6g}", metric, bound,
+                               error->from_s, limit->from_s));
   if (std::isfinite(error->until_s))
-    refuse(fmt::format("'{}' must not have 'until_s', got {:.6g}: the bound is until the end", metric, error->until_s));
-  if (error->dimensions != 2) refuse(fmt::format("'{}' must have 2 dimensions: the bound is horizontal", metric));
+    viewer::refuse(
+        fmt::format("'{}' must not have 'until_s', got {:.6g}: the bound is until the end", metric, error->until_s));
+  if (error->dimensions != 2)
+    viewer::refuse(fmt::format("'{}' must have 2 dimensions: the bound is horizontal", metric));
 }
 
 SHOAL_METRIC("bound_ratio", BoundRatioMetric);
 
 }  // namespace
 
-}  // namespace tools
+}  // namespace experiment

@@ -3,7 +3,7 @@
 #include "experiment/score/link_counts.hpp"
 #include "experiment/score/metric_registry.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -57,4 +57,4 @@ SHOAL_METRIC("bytes_per_metre", BytesPerMeterMetric);
 
 }  // namespace
 
-}  // namespace tools
+}  // namespace experiment

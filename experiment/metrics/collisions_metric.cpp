@@ -7,7 +7,7 @@
 #include "experiment/score/metric_registry.hpp"
 #include "sim/script/action.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -112,4 +112,4 @@ SHOAL_METRIC("collisions", CollisionMetric);
 
 }  // namespace
 
-}  // namespace tools
+}  // namespace experiment

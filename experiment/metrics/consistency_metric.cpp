@@ -5,7 +5,7 @@
 #include "experiment/metrics/estimate_metric.hpp"
 #include "experiment/score/metric_registry.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -46,4 +46,4 @@ SHOAL_METRIC("consistency", ConsistencyMetric);
 
 }  // namespace
 
-}  // namespace tools
+}  // namespace experiment

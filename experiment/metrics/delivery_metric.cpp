@@ -4,7 +4,7 @@
 #include "experiment/score/metric_registry.hpp"
 #include "sim/acoustics/signal.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -94,4 +94,4 @@ SHOAL_METRIC("delivery", DeliveryMetric);
 
 }  // namespace
 
-}  // namespace tools
+}  // namespace experiment

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiment/score/metric_registry.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -43,4 +43,4 @@ SHOAL_METRIC("distance", DistanceMetric);
 
 }  // namespace
 
-}  // namespace tools
+}  // namespace experiment

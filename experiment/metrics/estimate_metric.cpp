@@ -13,7 +13,7 @@
 #include "shoal/pose_t.hpp"
 #include "sim/base/log.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -172,4 +172,4 @@ double EstimateMetric::max_gap_s() const {
   return std::max(gap_s, now_s - last_s);
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -10,7 +10,7 @@
 #include "experiment/metrics/scored_period.hpp"
 #include "experiment/score/metric.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Compares estimates of a vehicle's position, shoal.pose_t or shoal.estimate_t on a channel, with the truth.  Its
 /// subclasses compute figures from the errors.
@@ -81,4 +81,4 @@ class EstimateMetric : public Metric {
   int warnings_ = 0;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -7,7 +7,7 @@
 #include "experiment/score/metric_registry.hpp"
 #include "sim/base/math.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -86,4 +86,4 @@ SHOAL_METRIC("formation_error", FormationErrorMetric);
 
 }  // namespace
 
-}  // namespace tools
+}  // namespace experiment

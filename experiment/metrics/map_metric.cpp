@@ -13,7 +13,7 @@
 #include "shoal/message_codec.hpp"
 #include "sim/base/log.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -179,4 +179,4 @@ SHOAL_METRIC("map", MapMetric);
 
 }  // namespace
 
-}  // namespace tools
+}  // namespace experiment

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiment/score/metric_registry.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -67,4 +67,4 @@ SHOAL_METRIC("messages", MessagesMetric);
 
 }  // namespace
 
-}  // namespace tools
+}  // namespace experiment

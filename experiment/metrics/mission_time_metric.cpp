@@ -4,7 +4,7 @@
 #include "sim/script/event_config.hpp"
 #include "sim/world/world_editor.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -70,4 +70,4 @@ SHOAL_METRIC("mission_time", MissionTimeMetric);
 
 }  // namespace
 
-}  // namespace tools
+}  // namespace experiment

@@ -7,7 +7,7 @@
 #include "sim/device/device_registry.hpp"
 #include "sim/world_file/world_config.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -49,4 +49,4 @@ void ModemsParams::check(const sim::MetricConfig& metric, const sim::WorldConfig
   }
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -5,7 +5,7 @@
 
 #include "sim/world_file/metric_registry.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Parameters of a metric of one modem or all modems, of one vehicle or all vehicles.
 class ModemsParams : public sim::MetricParams {
@@ -20,4 +20,4 @@ class ModemsParams : public sim::MetricParams {
   void read_modems(sim::ParamReader& in);
 };
 
-}  // namespace tools
+}  // namespace experiment

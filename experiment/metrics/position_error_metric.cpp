@@ -5,7 +5,7 @@
 #include "experiment/metrics/estimate_metric.hpp"
 #include "experiment/score/metric_registry.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -49,4 +49,4 @@ SHOAL_METRIC("position_error", PositionErrorMetric);
 
 }  // namespace
 
-}  // namespace tools
+}  // namespace experiment

@@ -10,7 +10,7 @@
 
 #include "sim/world_file/metric_registry.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Parameters of a metric that scores from `from_s` until `until_s`.
 struct ScoredPeriod : sim::MetricParams {
@@ -30,4 +30,4 @@ struct ScoredPeriod : sim::MetricParams {
   }
 };
 
-}  // namespace tools
+}  // namespace experiment

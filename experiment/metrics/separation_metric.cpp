@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiment/score/metric_registry.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -58,4 +58,4 @@ SHOAL_METRIC("separation", SeparationMetric);
 
 }  // namespace
 
-}  // namespace tools
+}  // namespace experiment

@@ -6,7 +6,7 @@
 #include "experiment/score/metric_registry.hpp"
 #include "experiment/score/support.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -100,4 +100,4 @@ SHOAL_METRIC("stability", StabilityMetric);
 
 }  // namespace
 
-}  // namespace tools
+}  // namespace experiment

@@ -14,7 +14,7 @@
 #include "shoal/pose_t.hpp"
 #include "sim/base/log.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -238,4 +238,4 @@ SHOAL_METRIC("trajectory", TrajectoryMetric);
 
 }  // namespace
 
-}  // namespace tools
+}  // namespace experiment

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tools {
+namespace experiment {
 
 CmaEs::CmaEs(const Point& start, const Options& options)
     : population_(options.population), sigma_(options.sigma), random_(options.seed, "cma_es") {
@@ -96,4 +96,4 @@ void CmaEs::decompose() {
   D_ = solver.eigenvalues().cwiseMax(min_eigenvalue).cwiseSqrt();
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -7,7 +7,7 @@
 #include "experiment/optimize/optimizer.hpp"
 #include "sim/random/random.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Evolution strategy with covariance matrix adaptation, with the formulas and constants of Hansen's tutorial (arXiv
 /// 1604.00772) and positive weights only.  A sample outside of the box is reflected into it; its value is lowered by
@@ -47,4 +47,4 @@ class CmaEs final : public Optimizer {
   Eigen::MatrixXd samples_;  ///< of the last propose(), by column, before reflection
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tools {
+namespace experiment {
 
 GeneticAlgorithm::GeneticAlgorithm(Point start, const Options& options)
     : start_(std::move(start)), options_(options), random_(options.seed, "genetic_algorithm") {}
@@ -51,4 +51,4 @@ void GeneticAlgorithm::learn(std::span<const double> values) {
   survivors_.resize(std::min(survivors_.size(), static_cast<std::size_t>(options_.population)));
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -6,7 +6,7 @@
 #include "experiment/optimize/optimizer.hpp"
 #include "sim/random/random.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Genetic algorithm with real numbers: parents by tournament, children by BLX-alpha crossing (Eshelman and Schaffer
 /// 1993) and mutation.  The best of parents and children survive.
@@ -42,4 +42,4 @@ class GeneticAlgorithm final : public Optimizer {
   std::vector<Point> children_;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace tools {
+namespace experiment {
 
 double reflected(double x) {
   const double in_period = x - 2 * std::floor(x / 2);  // 0 to 2
@@ -19,4 +19,4 @@ std::vector<std::size_t> by_rank(std::span<const double> values) {
   return order;
 }
 
-}  // namespace tools
+}  // namespace experiment

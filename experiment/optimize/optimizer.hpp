@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 /// Point of the search space: each coordinate from 0 to 1.
 using Point = std::vector<double>;
@@ -27,4 +27,4 @@ double reflected(double x);
 /// Returns the numbers of the values in descending order; of equal values the first one comes first.
 std::vector<std::size_t> by_rank(std::span<const double> values);
 
-}  // namespace tools
+}  // namespace experiment

@@ -18,7 +18,7 @@
 
 extern char** environ;
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -102,4 +102,4 @@ void Browser::open(const std::string& url) {
     watch_ = std::jthread([pid, program = command[0]](const std::stop_token& stop) { watch(stop, pid, program); });
 }
 
-}  // namespace tools
+}  // namespace experiment

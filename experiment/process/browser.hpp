@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 /// Returns the command that shows an address: `browser`, which is the value of `$BROWSER`, else `xdg-open`.  Of several
 /// programs in `browser`, separated by colons, the first one.  Its words are arguments; `%s` in them is the address,
@@ -24,4 +24,4 @@ class Browser {
   std::jthread watch_;  // until the program has ended
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -10,7 +10,7 @@
 #include "sim/vehicle/vehicle.hpp"
 #include "sim/world_file/config_warnings.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -105,4 +105,4 @@ void warn_of_channels(const sim::LoadedWorld& loaded, const sim::World& world, c
   ChannelCheck(loaded, world, use, is_recorded, warnings).check();
 }
 
-}  // namespace tools
+}  // namespace experiment

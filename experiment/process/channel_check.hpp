@@ -6,7 +6,7 @@
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Warns, at the end of a run, of what lockstep clients published where a device reports or nothing reads, and of
 /// subscriptions to channels on which nothing was published.  Channels that the programs of the world declare are not
@@ -15,4 +15,4 @@ namespace tools {
 void warn_of_channels(const sim::LoadedWorld& loaded, const sim::World& world, const bridges::ChannelUse& use,
                       bool is_recorded, sim::Warnings& warnings);
 
-}  // namespace tools
+}  // namespace experiment

@@ -11,7 +11,7 @@
 
 extern char** environ;
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -93,4 +93,4 @@ int start_child(const ChildProgram& program, pid_t& pid) {
   return error;
 }
 
-}  // namespace tools
+}  // namespace experiment

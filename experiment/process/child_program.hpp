@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 /// Executable, arguments and environment of a program to start.
 struct ChildProgram {
@@ -24,4 +24,4 @@ int start_child(const ChildProgram& program, pid_t& pid);
 /// Returns the environment of this process.
 std::vector<std::string> own_environment();
 
-}  // namespace tools
+}  // namespace experiment

@@ -18,7 +18,7 @@
 #include "sim/program/program_args.hpp"
 #include "sim/world_file/config_warnings.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -257,4 +257,4 @@ void warn_of_unchecked_arguments(const sim::LoadedWorld& loaded, sim::Warnings& 
   }
 }
 
-}  // namespace tools
+}  // namespace experiment

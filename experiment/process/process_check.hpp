@@ -7,7 +7,7 @@
 #include "sim/config/warnings.hpp"
 #include "sim/world_file/load_world.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Warns of programs of a world that cannot work as configured, as far as their `args:` and declarations show:
 /// overlapping slots, a vehicle to follow that does not exist or never sends, a different name in the lockstep (all for
@@ -23,4 +23,4 @@ void warn_of_missing_programs(const sim::LoadedWorld& loaded, sim::Warnings& war
 /// Warns of a `command:` whose program has a declaration, by which `args:` could be checked.
 void warn_of_unchecked_arguments(const sim::LoadedWorld& loaded, sim::Warnings& warnings);
 
-}  // namespace tools
+}  // namespace experiment

@@ -19,7 +19,7 @@
 #include "experiment/process/child_program.hpp"
 #include "sim/config/shipped_files.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -136,4 +136,4 @@ void ProcessGroup::stop() {
   left_behind_.clear();
 }
 
-}  // namespace tools
+}  // namespace experiment

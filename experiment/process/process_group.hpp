@@ -9,7 +9,7 @@
 
 #include "sim/world_file/world_config.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// External programs of an experiment.  Each gets its own process group, so that its children end with it, and SIGTERM
 /// when this process is killed.
@@ -59,4 +59,4 @@ class ProcessGroup {
 /// Returns whether ProcessGroup::start finds such a program.
 bool can_be_started(const std::string& program);
 
-}  // namespace tools
+}  // namespace experiment

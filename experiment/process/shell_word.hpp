@@ -3,9 +3,9 @@
 
 #include <string>
 
-namespace tools {
+namespace experiment {
 
 /// Quotes a word for a POSIX shell, if that is necessary.
 std::string shell_word(const std::string& word);
 
-}  // namespace tools
+}  // namespace experiment

@@ -9,7 +9,7 @@
 
 #include "experiment/terminal/terminal_keys.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -83,4 +83,4 @@ int caught_signals() {
   return signals_caught;
 }
 
-}  // namespace tools
+}  // namespace experiment

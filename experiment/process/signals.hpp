@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-namespace tools {
+namespace experiment {
 
 /// Installs signal handlers: SIGINT, SIGTERM and SIGHUP end the run at the next step.  A second signal, half a second
 /// later or more, ends the program at once with exit code 128 plus its number, in case a step does not end.  SIGPIPE
@@ -21,4 +21,4 @@ int caught_signal();
 /// Returns the number of signals that were caught.
 int caught_signals();
 
-}  // namespace tools
+}  // namespace experiment

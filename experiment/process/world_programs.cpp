@@ -7,7 +7,7 @@
 #include "sim/program/find_program.hpp"
 #include "sim/program/program_args.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -75,4 +75,4 @@ void read_programs(sim::LoadedWorld& loaded, const ProgramLookup& lookup) {
   diagnostics.throw_if_any();
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -7,7 +7,7 @@
 #include "sim/program/program_declaration.hpp"
 #include "sim/world_file/load_world.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Folders in which the programs of a world are looked up.
 struct ProgramLookup {
@@ -29,4 +29,4 @@ struct WrittenProcess {
 };
 WrittenProcess written_process(const sim::LoadedWorld& loaded, std::size_t index);
 
-}  // namespace tools
+}  // namespace experiment

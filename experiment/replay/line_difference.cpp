@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <sstream>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -69,4 +69,4 @@ std::vector<std::string> line_difference(const std::string& first, const std::st
   return result;
 }
 
-}  // namespace tools
+}  // namespace experiment

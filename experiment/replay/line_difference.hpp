@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 /// Returns the lines that differ between two texts, in order: `-` before lines only in the first, `+` before lines only
 /// in the second, with the line number.  At most `max` lines, followed by the number of the remaining ones.
 std::vector<std::string> line_difference(const std::string& first, const std::string& second, std::size_t max = 40);
 
-}  // namespace tools
+}  // namespace experiment

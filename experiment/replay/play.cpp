@@ -27,7 +27,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/world_file/load_world.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -287,4 +287,4 @@ PlayOutcome play(const PlayOptions& options) {
   return Player(options).run();
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 struct PlayOptions {
   std::string log;                 ///< a record of shoal run --record
@@ -32,4 +32,4 @@ struct PlayOutcome {
 /// record, 5 no client joined, or one did not answer.
 PlayOutcome play(const PlayOptions& options);
 
-}  // namespace tools
+}  // namespace experiment

@@ -9,7 +9,7 @@
 #include "experiment/replay/recorded_steps.hpp"
 #include "experiment/replay/replay_messages.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -104,4 +104,4 @@ std::vector<std::string> PlayedAnswers::to_lines(double step_s) const {
   return lines;
 }
 
-}  // namespace tools
+}  // namespace experiment

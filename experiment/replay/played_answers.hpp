@@ -13,7 +13,7 @@
 #include "experiment/replay/replay_log.hpp"
 #include "sim/bus/message_gate.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Compares the messages that programs publish during the playback of a record with the inputs of the world in its run:
 /// by step and channel, in order.  Channels on which no program has published yet belong to other programs.
@@ -52,4 +52,4 @@ class PlayedAnswers {
   std::map<std::string, Channel, std::less<>> channels_;
 };
 
-}  // namespace tools
+}  // namespace experiment

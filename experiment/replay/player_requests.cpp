@@ -16,7 +16,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/run/lockstep.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -90,4 +90,4 @@ std::optional<std::string> PlayerRequests::execute(const std::string& command, c
   return std::nullopt;
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -13,7 +13,7 @@
 #include "sim/bus/bus.hpp"
 #include "sim/run/run_control.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Serves requests on sim.control during the playback of a record: pause, resume, step, speed and where.  Rejects
 /// requests that would change a world, and clients that only subscribe to channels that the record lacks.
@@ -38,4 +38,4 @@ class PlayerRequests final : public bridges::TimeMachine {
   std::set<std::pair<std::string, std::string>> warned_;  // client and channel
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -89,4 +89,4 @@ bool ReadAhead::next(bridges::LogEventView& event) {
   return true;
 }
 
-}  // namespace tools
+}  // namespace experiment

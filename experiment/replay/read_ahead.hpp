@@ -12,7 +12,7 @@
 
 #include "bridges/log/event_log.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Reads an LCM event log in its own thread, a few blocks ahead of the reader of the events.
 class ReadAhead {
@@ -53,4 +53,4 @@ class ReadAhead {
   std::thread thread_;
 };
 
-}  // namespace tools
+}  // namespace experiment

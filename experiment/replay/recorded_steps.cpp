@@ -7,7 +7,7 @@
 
 #include "bridges/log/run_journal.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -64,4 +64,4 @@ void RecordedSteps::published_at(std::int64_t step, const Use& use) {
   }
 }
 
-}  // namespace tools
+}  // namespace experiment

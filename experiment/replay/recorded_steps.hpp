@@ -11,7 +11,7 @@
 #include "bridges/log/event_log.hpp"
 #include "experiment/replay/replay_log.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Reader of the messages of a record step by step, in the order in which the run delivered them: the inputs of the
 /// world before a step, then the messages that the simulator published at its end.  Messages of the run itself
@@ -44,4 +44,4 @@ class RecordedSteps {
 /// record.
 bool is_of_the_handshake(std::string_view channel);
 
-}  // namespace tools
+}  // namespace experiment

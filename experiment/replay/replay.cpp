@@ -21,7 +21,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/world/world_state.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -312,4 +312,4 @@ ReplayOutcome replay(const ReplayOptions& options) {
   return std::make_unique<Replay>(options)->run();
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -9,7 +9,7 @@
 #include "experiment/replay/replay_log.hpp"
 #include "sim/world_file/load_world.hpp"
 
-namespace tools {
+namespace experiment {
 
 struct ReplayOptions {
   std::string log;
@@ -51,4 +51,4 @@ struct ReplayOutcome {
 /// sim::ConfigError when the world cannot be built.
 ReplayOutcome replay(const ReplayOptions& options);
 
-}  // namespace tools
+}  // namespace experiment

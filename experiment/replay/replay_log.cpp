@@ -30,7 +30,7 @@
 #include "shoal/sim_state_t.hpp"
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -445,4 +445,4 @@ ReplayLog read_replay_log(const std::string& path) {
   return Reader(path).read();
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -12,7 +12,7 @@
 #include "sim/bus/bus.hpp"
 #include "sim/state/state_archive.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Content of a log of a run without the messages: everything needed to replay the world.
 struct ReplayLog {
@@ -59,4 +59,4 @@ struct ReplayLog {
 /// runs, or has time stamps that do not match its run.
 ReplayLog read_replay_log(const std::string& path);
 
-}  // namespace tools
+}  // namespace experiment

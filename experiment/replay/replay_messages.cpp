@@ -15,7 +15,7 @@
 #include "shoal/sim_state_t.hpp"
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -273,4 +273,4 @@ void ReplayMessages::finish(std::int64_t step) {
                          channel.left - channel.input_record.size()));
 }
 
-}  // namespace tools
+}  // namespace experiment

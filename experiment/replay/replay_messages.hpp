@@ -15,7 +15,7 @@
 #include "experiment/replay/read_ahead.hpp"
 #include "experiment/replay/replay_log.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Describes how a message of this replay differs from one of a log, such as `x_m is 1.25 in the log and 1.26 here`.
 std::string message_difference(std::span<const std::byte> logged, std::span<const std::byte> here);
@@ -100,4 +100,4 @@ class ReplayMessages {
   std::map<std::string, Distance> distances_;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -3,7 +3,7 @@
 
 #include "experiment/replay/replay.hpp"
 
-namespace tools {
+namespace experiment {
 
 int ReplayOutcome::exit_code() const {
   if (first) return 1;
@@ -29,4 +29,4 @@ std::string ReplayOutcome::to_text() const {
   return text;
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -10,7 +10,7 @@
 #include "experiment/replay/replay_log.hpp"
 #include "sim/bus/byte_port.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Serial ports that return the bytes that were read in the recorded run.
 class ReplayPorts {
@@ -40,4 +40,4 @@ class ReplayPorts {
   bridges::SerialInputs inputs_;
 };
 
-}  // namespace tools
+}  // namespace experiment

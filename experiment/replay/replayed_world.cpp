@@ -17,7 +17,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/world/world_state.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -294,4 +294,4 @@ void ReplayedWorld::note(const std::string& text) {
   if (notes_.size() < 20 && std::find(notes_.begin(), notes_.end(), text) == notes_.end()) notes_.push_back(text);
 }
 
-}  // namespace tools
+}  // namespace experiment

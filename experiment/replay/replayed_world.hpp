@@ -28,7 +28,7 @@
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// World of a log that is run again: the recorded inputs are delivered at the same steps as in the run.  A log of
 /// several branches gives the last one.
@@ -133,4 +133,4 @@ class ReplayedWorld {
   std::vector<std::string> notes_;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -13,7 +13,7 @@
 #include "experiment/report/chart_axis.hpp"
 #include "experiment/report/report_page.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -191,4 +191,4 @@ std::string study_algorithms_html(const JsonReader& in) {
   return "<h2>Algorithms</h2>\n" + list_html(sentences) + chart(cells) + table(cells) + pairs(algorithms);
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -87,4 +87,4 @@ std::string tick_text(const std::vector<double>& ticks, double tick) {
   return fmt::format("{:.{}g}", tick, static_cast<int>(std::clamp(std::log10(size / step) + 2, 1.0, 15.0)));
 }
 
-}  // namespace tools
+}  // namespace experiment

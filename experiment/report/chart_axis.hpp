@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 /// Axis of a chart, from one tick to another: multiples of 1, 2 or 5 times a power of ten, on a logarithmic axis such
 /// numbers themselves.  Between whole numbers ticks are whole.
@@ -33,4 +33,4 @@ double share_of_axis(const std::vector<double>& ticks, bool log, double value);
 /// Returns the text of a tick, with the digits that distinguish it from its neighbors.
 std::string tick_text(const std::vector<double>& ticks, double tick);
 
-}  // namespace tools
+}  // namespace experiment

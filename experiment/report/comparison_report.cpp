@@ -9,7 +9,7 @@
 #include "experiment/report/report_page.hpp"
 #include "experiment/report/report_plots.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -62,4 +62,4 @@ std::string comparison_report(const std::vector<RunRecord>& runs) {
   return html_page(title, body + figures_of(runs) + made_by_html());
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -7,7 +7,7 @@
 
 #include "experiment/files/html.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -110,4 +110,4 @@ std::string FigureColumns::html() const {
   return html.empty() ? "" : "<h2>Figures</h2>\n" + html;
 }
 
-}  // namespace tools
+}  // namespace experiment

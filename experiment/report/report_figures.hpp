@@ -6,7 +6,7 @@
 
 #include "experiment/results/run_metrics.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Returns the figures of one run by metric, each with its unit and meaning.  Counts of 0 are collapsed, except for a
 /// metric's most important figure and for figures that a rule names.
@@ -38,4 +38,4 @@ class FigureColumns {
   std::vector<Row> rows_;
 };
 
-}  // namespace tools
+}  // namespace experiment

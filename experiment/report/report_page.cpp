@@ -16,7 +16,7 @@
 #include "experiment/report/study_report.hpp"
 #include "experiment/run/version.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -229,4 +229,4 @@ std::string report_page(const std::vector<std::string>& directories, const std::
   return runs.size() == 1 ? run_report(runs.front(), page_in_3d) : comparison_report(runs);
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -9,7 +9,7 @@
 #include "experiment/results/run_record.hpp"
 #include "experiment/score/judgement.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Returns a results directory as one HTML page that needs no network: verdict and plots first, then figures by metric,
 /// logs of programs and facts about the run.  Also accepts the directory of a study; several directories of runs are
@@ -38,4 +38,4 @@ std::string facts_table(const std::vector<std::pair<std::string, std::string>>& 
 /// Returns the version of the program that wrote the page.
 std::string made_by_html();
 
-}  // namespace tools
+}  // namespace experiment

@@ -10,7 +10,7 @@
 #include "experiment/results/run_plots.hpp"
 #include "sim/base/log.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -76,4 +76,4 @@ std::string run_plots_html(const RunRecord& run) {
   return plots_html(run.directory, plots_of(run), captions_of_run());
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -7,7 +7,7 @@
 
 #include "experiment/results/run_record.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Returns the plots of a directory as HTML, each with its caption (by file name; default: the name); lists the plots
 /// that are missing or not a complete PNG file.
@@ -17,4 +17,4 @@ std::string plots_html(const std::string& directory, const std::vector<std::stri
 /// Returns the plots of a run.
 std::string run_plots_html(const RunRecord& run);
 
-}  // namespace tools
+}  // namespace experiment

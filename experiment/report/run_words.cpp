@@ -10,7 +10,7 @@
 #include <set>
 #include <string_view>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -272,4 +272,4 @@ std::vector<std::string> contacts_in_words(const RunRecord& run) {
   return sentences;
 }
 
-}  // namespace tools
+}  // namespace experiment

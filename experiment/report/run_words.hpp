@@ -7,7 +7,7 @@
 #include "experiment/results/run_metrics.hpp"
 #include "experiment/results/run_record.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Describes the outcome of rules in one line: `7 of 8 rules hold, 1 failed.`  Empty when there are none.
 std::string rules_in_words(const std::vector<RunRecord::Rule>& rules);
@@ -21,4 +21,4 @@ std::vector<std::string> contacts_in_words(const RunRecord& run);
 /// Returns a length in a readable unit: `0.91 m`, `138 m`, `2.81 km`.
 std::string length_text(double length_m);
 
-}  // namespace tools
+}  // namespace experiment

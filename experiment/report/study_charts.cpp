@@ -15,7 +15,7 @@
 #include "experiment/files/html.hpp"
 #include "experiment/report/chart_axis.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -329,4 +329,4 @@ std::string study_extremes_html(const JsonReader& in, const std::string& directo
   return html + "</ul>\n";
 }
 
-}  // namespace tools
+}  // namespace experiment

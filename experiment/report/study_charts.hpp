@@ -6,7 +6,7 @@
 
 #include "experiment/files/json_reader.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Parts of the page of a study, from its study.json.  Each is empty when an older file lacks the data.  They throw
 /// std::runtime_error with the key and the rule.
@@ -19,4 +19,4 @@ std::string study_comparisons_html(const JsonReader& in);
 /// study.
 std::string study_extremes_html(const JsonReader& in, const std::string& directory);
 
-}  // namespace tools
+}  // namespace experiment

@@ -17,7 +17,7 @@
 #include "experiment/report/run_words.hpp"
 #include "experiment/report/study_charts.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -241,4 +241,4 @@ std::string study_report(const std::string& directory) {
   return html_page(title, body + made_by_html());
 }
 
-}  // namespace tools
+}  // namespace experiment

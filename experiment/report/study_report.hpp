@@ -3,9 +3,9 @@
 
 #include <string>
 
-namespace tools {
+namespace experiment {
 
 /// Returns the page of a study's folder, from its study.json.  Throws std::runtime_error with file and reason.
 std::string study_report(const std::string& directory);
 
-}  // namespace tools
+}  // namespace experiment

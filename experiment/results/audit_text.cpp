@@ -3,7 +3,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
-namespace tools {
+namespace experiment {
 
 nlohmann::ordered_json audit_json(const std::vector<bridges::AuditEntry>& audit) {
   auto json = nlohmann::ordered_json::array();
@@ -24,4 +24,4 @@ std::string audit_text(const bridges::AuditEntry& audit_entry) {
                      bridges::who_asked(audit_entry.client, audit_entry.signer));
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -7,7 +7,7 @@
 
 #include "bridges/control/run_audit.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Returns the entries of `control.audit` in summary.json.
 nlohmann::ordered_json audit_json(const std::vector<bridges::AuditEntry>& audit);
@@ -15,4 +15,4 @@ nlohmann::ordered_json audit_json(const std::vector<bridges::AuditEntry>& audit)
 /// Returns one line: `quit at 12.30 s by client 'shoal-control-4711'`.
 std::string audit_text(const bridges::AuditEntry& audit_entry);
 
-}  // namespace tools
+}  // namespace experiment

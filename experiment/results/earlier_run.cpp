@@ -10,7 +10,7 @@
 #include "sim/config/config_node.hpp"
 #include "sim/config/diagnostics.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -58,4 +58,4 @@ void remove_earlier_run(const std::string& directory) {
   }
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -22,7 +22,7 @@
 #include "sim/base/log.hpp"
 #include "sim/base/number.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -465,4 +465,4 @@ void Results::plot(const Summary& summary, const Scoring& scoring, const std::fu
     sim::log_warn("no plots: gnuplot failed, see {}/plot.log", directory_);
 }
 
-}  // namespace tools
+}  // namespace experiment

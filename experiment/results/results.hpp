@@ -19,7 +19,7 @@
 #include "sim/director/script.hpp"
 #include "sim/world/world.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Summary of a run, with the same keys for every world.
 struct Summary {
@@ -153,4 +153,4 @@ class Results {
   std::optional<std::string> error_;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -10,7 +10,7 @@
 #include "bridges/base/file_lock.hpp"
 #include "experiment/results/run_error.hpp"
 
-namespace tools {
+namespace experiment {
 
 ResultsLock::ResultsLock(const std::string& directory) {
   std::error_code error;
@@ -25,4 +25,4 @@ ResultsLock::ResultsLock(const std::string& directory) {
                        " is writing there; choose another folder with --results");
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -5,7 +5,7 @@
 
 #include "bridges/base/file_descriptor.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Lock of a results folder against other runs while this one writes there.  It is released when the process ends.
 class ResultsLock {
@@ -17,4 +17,4 @@ class ResultsLock {
   bridges::FileDescriptor folder_;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -5,10 +5,10 @@
 
 #include "sim/config/config_node.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Writes DIRECTORY/world.yaml.  A run does so before its first step, so that the file exists even when the run is
 /// killed. Throws std::runtime_error.
 void write_results_world(const std::string& directory, const sim::ConfigNode& resolved);
 
-}  // namespace tools
+}  // namespace experiment

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace tools {
+namespace experiment {
 
 /// Error that ends the run, with its exit code and its name in the summary.
 struct RunError : std::runtime_error {
@@ -14,4 +14,4 @@ struct RunError : std::runtime_error {
   std::string ended;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -11,7 +11,7 @@
 
 #include "sim/config/config_node.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -133,4 +133,4 @@ std::string figure_with_unit(const RunMetric::Figure& figure) {
   return figure_text(figure.value) + (has_unit ? " " + figure.kind->unit : "");
 }
 
-}  // namespace tools
+}  // namespace experiment

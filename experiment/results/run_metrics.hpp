@@ -9,7 +9,7 @@
 #include "experiment/results/run_record.hpp"
 #include "sim/world_file/metric_registry.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Figures of one metric of a run.
 struct RunMetric {
@@ -45,4 +45,4 @@ std::string figure_text(const std::optional<double>& value);
 /// Returns the same with its unit: `0.91 m`.
 std::string figure_with_unit(const RunMetric::Figure& figure);
 
-}  // namespace tools
+}  // namespace experiment

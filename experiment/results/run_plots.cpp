@@ -10,7 +10,7 @@
 
 #include "experiment/files/gnuplot.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -197,4 +197,4 @@ std::string run_plots_script(const sim::World& world, const Scoring& scoring) {
   return script + title_of(world, "consistency of the estimates") + nees_script(tracks);
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -6,7 +6,7 @@
 #include "experiment/score/scoring.hpp"
 #include "sim/world/world.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Names of all plots that a results directory may have, in order of presentation.
 inline constexpr const char* run_plots[] = {"tracks.png", "errors.png", "errors_by_distance.png", "nees.png"};
@@ -15,4 +15,4 @@ inline constexpr const char* run_plots[] = {"tracks.png", "errors.png", "errors_
 /// moved and plotted again.
 std::string run_plots_script(const sim::World& world, const Scoring& scoring);
 
-}  // namespace tools
+}  // namespace experiment

@@ -9,7 +9,7 @@
 
 #include "experiment/files/json_reader.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -120,4 +120,4 @@ RunRecord read_run(const std::string& directory) {
   return run;
 }
 
-}  // namespace tools
+}  // namespace experiment

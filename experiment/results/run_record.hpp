@@ -10,7 +10,7 @@
 
 #include "experiment/score/judgement.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Contents of a results directory, read from its files.
 struct RunRecord {
@@ -70,4 +70,4 @@ RunRecord read_run(const std::string& directory);
 /// Reads a file of at most 64 MB.  Throws std::runtime_error.
 std::string read_whole_file(const std::string& path);
 
-}  // namespace tools
+}  // namespace experiment

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -74,4 +74,4 @@ void SummaryFile::write(const std::string& text) {
   }
 }
 
-}  // namespace tools
+}  // namespace experiment

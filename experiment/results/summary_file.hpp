@@ -6,7 +6,7 @@
 
 #include "bridges/base/file_descriptor.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Removes a link at the path of a file to be written, because the link would redirect the write.  Other files are
 /// kept, and so are links to terminals and other devices.
@@ -37,4 +37,4 @@ class SummaryFile {
   std::vector<Room> rooms_;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiment/results/verdict_json.hpp"
 
-namespace tools {
+namespace experiment {
 
 nlohmann::ordered_json json_of(const RuleVerdict& verdict) {
   nlohmann::ordered_json json{{"rule", verdict.rule}, {"passed", verdict.passed}};
@@ -12,4 +12,4 @@ nlohmann::ordered_json json_of(const RuleVerdict& verdict) {
   return json;
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -5,9 +5,9 @@
 
 #include "experiment/score/rule_verdict.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Returns an entry of `rules` in summary.json and study.json.
 nlohmann::ordered_json json_of(const RuleVerdict& verdict);
 
-}  // namespace tools
+}  // namespace experiment

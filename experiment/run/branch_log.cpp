@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
-namespace tools {
+namespace experiment {
 
 void BranchLog::mark(std::int64_t step, std::int64_t oldest) {
   // Keep the mark that is valid at the oldest step.
@@ -44,4 +44,4 @@ std::string BranchLog::file_of(std::int32_t branch) const {
   return (path.parent_path() / name).string();
 }
 
-}  // namespace tools
+}  // namespace experiment

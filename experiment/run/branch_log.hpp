@@ -8,7 +8,7 @@
 #include "bridges/log/run_journal.hpp"
 #include "experiment/run/run_buses.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Records of a run's branches: each branch has its own file, which starts with a copy of its parent's up to the step
 /// of the branch point.
@@ -46,4 +46,4 @@ class BranchLog {
   bool next_is_ours_ = false;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -3,7 +3,7 @@
 
 #include "sim/bus/bus.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Bus between a world and its network: while it is muted, nothing is sent and incoming messages are discarded.
 class MuteBus final : public sim::Bus {
@@ -63,4 +63,4 @@ class MuteBus final : public sim::Bus {
   bool muted_ = false;
 };
 
-}  // namespace tools
+}  // namespace experiment

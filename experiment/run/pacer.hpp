@@ -12,7 +12,7 @@
 #include "sim/base/time.hpp"
 #include "sim/run/run_control.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Executes a request to pause, resume, step or set the speed; returns whether it was one.  Throws std::runtime_error
 /// for a number of steps or a speed that is not possible.
@@ -66,4 +66,4 @@ class Pacer {
   Clock::time_point wall_start_;
 };
 
-}  // namespace tools
+}  // namespace experiment

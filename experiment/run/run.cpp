@@ -17,7 +17,7 @@
 #include "sim/base/log.hpp"
 #include "sim/world/world_state.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -385,4 +385,4 @@ std::uint64_t Run::messages() const {
   return counts.published + counts.received;
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -26,7 +26,7 @@
 #include "sim/base/shared_work.hpp"
 #include "sim/run/run_control.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// One run of a world: its components and the step loop.
 class Run final : private Timeline {
@@ -119,4 +119,4 @@ class Run final : private Timeline {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace tools
+}  // namespace experiment

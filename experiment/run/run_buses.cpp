@@ -10,7 +10,7 @@
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/vehicle/run_hash.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -182,4 +182,4 @@ sim::BusCounts RunBuses::counts() const {
   return sum;
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -20,7 +20,7 @@
 #include "sim/bus/message_gate.hpp"
 #include "sim/world_file/world_config.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Buses of a run: that of the world, and those of single vehicles.  With a record, all are written into one log.
 class RunBuses {
@@ -111,4 +111,4 @@ class RunBuses {
   std::map<std::string, Link, std::less<>> others_;  // destroyed before the main one, whose log they write
 };
 
-}  // namespace tools
+}  // namespace experiment

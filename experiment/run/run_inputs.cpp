@@ -4,7 +4,7 @@
 #include "shoal/message_codec.hpp"
 #include "sim/base/log.hpp"
 
-namespace tools {
+namespace experiment {
 
 std::size_t RunInputs::Saved::bytes() const {
   return sizeof *this + input.bus.size() + input.channel.size() + input.payload.size();
@@ -71,4 +71,4 @@ void RunInputs::end_replay() {
   buses_.set_muted(false);
 }
 
-}  // namespace tools
+}  // namespace experiment

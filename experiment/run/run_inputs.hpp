@@ -10,7 +10,7 @@
 #include "bridges/log/run_journal.hpp"
 #include "experiment/run/run_buses.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Inputs of a run from outside since a step, for replaying them.
 class RunInputs {
@@ -58,4 +58,4 @@ class RunInputs {
   std::size_t next_ = 0;  ///< index of the next input to be delivered
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -12,7 +12,7 @@
 #include "bridges/base/bus_error.hpp"
 #include "bridges/base/file_descriptor.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -53,4 +53,4 @@ RunKeyFile::~RunKeyFile() {
   if (own_folder_) rmdir(folder_.c_str());
 }
 
-}  // namespace tools
+}  // namespace experiment

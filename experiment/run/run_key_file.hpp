@@ -5,7 +5,7 @@
 
 #include "bridges/signing/run_key.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// New key of a run, in a file that only its user can read, for the duration of the run.
 class RunKeyFile {
@@ -30,4 +30,4 @@ class RunKeyFile {
   bool own_folder_ = false;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -7,7 +7,7 @@
 #include <cctype>
 #include <charconv>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -125,4 +125,4 @@ std::string RunKeys::run_state() const {
   return time_.place() + (control_.paused ? "; continues " : "; goes ") + speed;
 }
 
-}  // namespace tools
+}  // namespace experiment

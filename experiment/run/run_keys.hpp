@@ -9,7 +9,7 @@
 #include "experiment/terminal/terminal_keys.hpp"
 #include "sim/run/run_control.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Actions of the keys of a terminal on a run.
 class RunKeys {
@@ -39,4 +39,4 @@ class RunKeys {
   std::string answer_;
 };
 
-}  // namespace tools
+}  // namespace experiment

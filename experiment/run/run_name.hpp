@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace tools {
+namespace experiment {
 
 /// Replaces `{run}` in a text by the name of the run, so that concurrent runs do not share a path.
 inline std::string with_run_name(std::string text, const std::string& name) {
@@ -13,4 +13,4 @@ inline std::string with_run_name(std::string text, const std::string& name) {
   return text;
 }
 
-}  // namespace tools
+}  // namespace experiment

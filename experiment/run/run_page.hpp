@@ -15,7 +15,7 @@
 #include "sim/run/run_control.hpp"
 #include "sim/world/world.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Options of the live page.
 struct ViewOptions {
@@ -76,4 +76,4 @@ class RunPage {
                      const std::string& log) = 0;
 };
 
-}  // namespace tools
+}  // namespace experiment

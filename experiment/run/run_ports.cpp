@@ -14,7 +14,7 @@
 #include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -72,4 +72,4 @@ sim::PortOpener serial_ports_of(const sim::WorldConfig& world, const RunOptions&
   };
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -4,7 +4,7 @@
 #include "experiment/run/runner.hpp"
 #include "sim/bus/byte_port.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Folder for the serial ports of a run without results: `shoal-USER/WORLD` in the folder for temporary files, where
 /// USER is a number.  The first part belongs to this user only; the second may not exist yet.
@@ -19,4 +19,4 @@ PortFolder temporary_port_folder(const std::string& world_name);
 /// name any file.  Prints the path of each port.
 sim::PortOpener serial_ports_of(const sim::WorldConfig& world, const RunOptions& options);
 
-}  // namespace tools
+}  // namespace experiment

@@ -7,7 +7,7 @@
 #include "experiment/run/run_name.hpp"
 #include "sim/base/log.hpp"
 
-namespace tools {
+namespace experiment {
 
 RunPrograms::RunPrograms(const sim::WorldConfig& config, const RunOptions& options, RunBuses& buses,
                          std::string run_key)
@@ -84,4 +84,4 @@ void RunPrograms::note_last(sim::Time now, const Clients& clients) {
   }
 }
 
-}  // namespace tools
+}  // namespace experiment

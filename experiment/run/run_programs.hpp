@@ -11,7 +11,7 @@
 #include "experiment/run/run_buses.hpp"
 #include "sim/world_file/world_config.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// External programs of a world: starts, awaits and monitors them.
 class RunPrograms {
@@ -65,4 +65,4 @@ class RunPrograms {
   std::set<std::string, std::less<>> removed_;
 };
 
-}  // namespace tools
+}  // namespace experiment

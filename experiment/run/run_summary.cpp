@@ -15,7 +15,7 @@
 #include "sim/world/end_check.hpp"
 #include "sim/world/world_state.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -149,4 +149,4 @@ void Run::write_results(Summary& summary) {
   }
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -11,7 +11,7 @@
 
 // Actions of a run when its world moves in time, and when it writes snapshots.
 
-namespace tools {
+namespace experiment {
 
 void Run::leave_branch(std::int64_t to_step, bool ours) {
   journal_.finish();
@@ -112,4 +112,4 @@ void Run::take_snapshots() {
   }
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -13,7 +13,7 @@
 #include "experiment/snapshot/run_identity.hpp"
 #include "sim/config/diagnostics.hpp"
 
-namespace tools {
+namespace experiment {
 
 Summary run_world(const sim::LoadedWorld& loaded, const RunOptions& options) {
   Summary summary;
@@ -65,4 +65,4 @@ std::string bug_hint(const std::string& results, const std::string& record) {
   return "to report this: shoal bug " + results + (record.empty() ? "" : with_record);
 }
 
-}  // namespace tools
+}  // namespace experiment

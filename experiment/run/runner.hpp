@@ -12,7 +12,7 @@
 #include "experiment/snapshot/snapshot_file.hpp"
 #include "sim/world_file/load_world.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Command-line options of a run.
 struct RunOptions {
@@ -56,4 +56,4 @@ Summary run_world(const sim::LoadedWorld& loaded, const RunOptions& options);
 /// Returns the command that reports a failed run; `results` and `record` as of `shoal run`, empty: none.
 std::string bug_hint(const std::string& results, const std::string& record);
 
-}  // namespace tools
+}  // namespace experiment

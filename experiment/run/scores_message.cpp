@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiment/run/scores_message.hpp"
 
-namespace tools {
+namespace experiment {
 
 void fill_scores(const Scoring& scoring, shoal::sim_scores_t& message) {
   message.figure.clear();
@@ -25,4 +25,4 @@ void fill_scores(const Scoring& scoring, shoal::sim_scores_t& message) {
   message.rules = static_cast<std::int32_t>(message.rule.size());
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -4,9 +4,9 @@
 #include "experiment/score/scoring.hpp"
 #include "shoal/sim_scores_t.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Fills in the present figures of all metrics and the outcomes of the rules; not the time.
 void fill_scores(const Scoring& scoring, shoal::sim_scores_t& message);
 
-}  // namespace tools
+}  // namespace experiment

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <ctime>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -82,4 +82,4 @@ std::string StepWatch::slow_island() const {
       island.body_count > max_names ? ", ..." : "");
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -6,7 +6,7 @@
 
 #include "sim/world/world.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Measures the CPU time of each step in the simulation thread, to 0.1 ms.  Very slow physics (many overlapping
 /// bodies) is reported once, with the bodies; a step beyond `limits: step_cpu_s` ends the run.  Neither changes the
@@ -34,4 +34,4 @@ class StepWatch {
   std::optional<double> warn_;                ///< ratio of CPU time to step length of the last step
 };
 
-}  // namespace tools
+}  // namespace experiment

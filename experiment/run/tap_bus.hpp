@@ -9,7 +9,7 @@
 
 #include "sim/bus/bus.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Bus that also passes what is published to a listener.
 class TapBus final : public sim::Bus {
@@ -53,4 +53,4 @@ class TapBus final : public sim::Bus {
   const Listener listener_;
 };
 
-}  // namespace tools
+}  // namespace experiment

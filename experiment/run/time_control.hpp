@@ -19,7 +19,7 @@
 #include "sim/run/run_control.hpp"
 #include "sim/world/world.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Time control of a running world: keeps snapshots of the last seconds and the inputs since then, rewinds to any step
 /// of them, writes and restores snapshot files, and stops the run at a time or event.
@@ -125,4 +125,4 @@ class TimeControl final : public bridges::TimeMachine {
   std::string broken_;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace tools {
+namespace experiment {
 
 /// Interface to rewind and restore a run.
 class Timeline {
@@ -18,4 +18,4 @@ class Timeline {
   virtual void start_branch(bool ours) = 0;
 };
 
-}  // namespace tools
+}  // namespace experiment

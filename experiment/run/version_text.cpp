@@ -7,7 +7,7 @@
 #include "experiment/run/version.hpp"
 #include "sim/ode/ode_version.hpp"
 
-namespace tools {
+namespace experiment {
 
 std::string version_text() {
   return fmt::format(
@@ -19,4 +19,4 @@ std::string version_text() {
       EIGEN_MINOR_VERSION, FMT_VERSION, __VERSION__);
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -8,7 +8,7 @@
 #include "devices/drive/wheel_geometry.hpp"
 #include "sim/vehicle/vehicle.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -153,4 +153,4 @@ std::string contacts_text(const std::vector<FirstContacts::Contact>& contacts) {
   return text;
 }
 
-}  // namespace tools
+}  // namespace experiment

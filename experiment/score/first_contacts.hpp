@@ -12,7 +12,7 @@
 #include "sim/state/state_archive.hpp"
 #include "sim/world/world.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Two bodies that separate and touch again within this time count as still in contact, because bodies bounce.
 inline constexpr double parted_after_s = 0.5;
@@ -83,4 +83,4 @@ class FirstContacts {
 /// Returns lines for the end of a run, ten at most; empty without contacts.
 std::string contacts_text(const std::vector<FirstContacts::Contact>& contacts);
 
-}  // namespace tools
+}  // namespace experiment

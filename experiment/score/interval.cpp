@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -81,4 +81,4 @@ Interval median_interval_95(const std::vector<double>& sorted) {
   return {sorted[rank - 1], sorted[n - rank]};
 }
 
-}  // namespace tools
+}  // namespace experiment

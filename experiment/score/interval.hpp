@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 /// 95 % confidence interval of a value, estimated from a sample of runs.
 struct Interval {
@@ -30,4 +30,4 @@ double fair_coin_share(std::size_t n, std::size_t heads);
 /// Statistics, section 7.1).  `sorted` in ascending order; NaN for fewer than six values, of which no pair does.
 Interval median_interval_95(const std::vector<double>& sorted);
 
-}  // namespace tools
+}  // namespace experiment

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-namespace tools {
+namespace experiment {
 
 /// Outcome of the rules of a run or a study.  A run that was not judged has not passed.
 enum class Judgement { passed, failed, not_judged };
@@ -25,4 +25,4 @@ inline std::optional<bool> as_flag(Judgement judgement) {
   return judgement == Judgement::passed;
 }
 
-}  // namespace tools
+}  // namespace experiment

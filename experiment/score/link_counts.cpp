@@ -8,7 +8,7 @@
 #include "sim/acoustics/channel.hpp"
 #include "sim/acoustics/transducer.hpp"
 
-namespace tools {
+namespace experiment {
 
 const std::vector<std::string>& loss_causes() {
   static const std::vector<std::string> causes = [] {
@@ -87,4 +87,4 @@ LinkCounts any_link_counts(const sim::World& world, const std::string& vehicle, 
   return counts.acoustic ? counts : radio_counts(world, vehicle, device);
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -8,7 +8,7 @@
 
 #include "sim/world/world.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Returns the words of sim::SignalLoss, as in `NAME.lost_CAUSE`.
 const std::vector<std::string>& loss_causes();
@@ -29,4 +29,4 @@ LinkCounts link_counts(const sim::World& world, const std::string& vehicle, cons
 /// Counts the same; for radio modems when none of these is acoustic.
 LinkCounts any_link_counts(const sim::World& world, const std::string& vehicle, const std::string& device);
 
-}  // namespace tools
+}  // namespace experiment

@@ -14,7 +14,7 @@
 #include "sim/state/state_archive.hpp"
 #include "sim/world/world.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Figures by name, `NAME.figure`.  NaN: there was no data to compute it from.
 using Figures = std::map<std::string, double>;
@@ -99,4 +99,4 @@ class Metric {
 /// Returns the 95 % quantile of the chi-square distribution with `dimensions` (2 or 3) degrees of freedom.
 double chi_square_95(int dimensions);
 
-}  // namespace tools
+}  // namespace experiment

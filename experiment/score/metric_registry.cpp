@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -24,4 +24,4 @@ std::unique_ptr<Metric> make_metric(const MetricContext& context) {
   return metric_makers().at(context.config.kind->word)(context);
 }
 
-}  // namespace tools
+}  // namespace experiment

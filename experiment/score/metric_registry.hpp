@@ -7,7 +7,7 @@
 
 #include "experiment/score/metric.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Creates the metric of an entry of `metrics:`, whose type must be registered.
 std::unique_ptr<Metric> make_metric(const MetricContext& context);
@@ -34,6 +34,6 @@ bool add_metric(const char* word) {
 /// `static std::vector<sim::FigureKind> figures()`, a `struct Params : sim::MetricParams` and a constructor from a
 /// MetricContext and the Params.
 #define SHOAL_METRIC(word, Model) \
-  [[maybe_unused]] static const bool registered_##Model = ::tools::detail::add_metric<Model>(word)
+  [[maybe_unused]] static const bool registered_##Model = ::experiment::detail::add_metric<Model>(word)
 
-}  // namespace tools
+}  // namespace experiment

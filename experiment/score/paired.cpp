@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -96,4 +96,4 @@ PairedComparison compare_pairs(std::vector<double> differences) {
   return comparison;
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -6,7 +6,7 @@
 
 #include "experiment/score/interval.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Comparison of two variants over pairs of runs with equal seeds.  NaN where there are too few pairs.
 struct PairedComparison {
@@ -31,4 +31,4 @@ double sign_test(std::size_t higher, std::size_t lower);
 /// by the normal distribution with corrections for ties and for continuity.  1 without differences.
 double wilcoxon_test(const std::vector<double>& differences);
 
-}  // namespace tools
+}  // namespace experiment

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 std::string RuleVerdict::text() const {
   return result.empty() ? rule : rule + " (" + result + ")";
@@ -37,4 +37,4 @@ RuleVerdict judge_rule(const sim::RuleExpression& rule,
   return verdict;
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -7,7 +7,7 @@
 #include "experiment/score/metric.hpp"
 #include "sim/world_file/rule_expression.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Rule and its outcome.
 struct RuleVerdict {
@@ -32,4 +32,4 @@ struct FigureValue {
 RuleVerdict judge_rule(const sim::RuleExpression& rule,
                        const std::function<FigureValue(const sim::RuleExpression::Figure&)>& value_of);
 
-}  // namespace tools
+}  // namespace experiment

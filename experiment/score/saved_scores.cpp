@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiment/score/saved_scores.hpp"
 
-namespace tools {
+namespace experiment {
 
 std::string restore_scores(Scoring& scoring, const sim::Bytes& saved) {
   try {
@@ -14,4 +14,4 @@ std::string restore_scores(Scoring& scoring, const sim::Bytes& saved) {
   return {};
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -7,7 +7,7 @@
 
 #include "experiment/score/metric_registry.hpp"
 
-namespace tools {
+namespace experiment {
 
 Scoring::Scoring(sim::World& world, FirstContacts::Report report) : world_(world), contacts_(world, std::move(report)) {
   const auto truth = [this](const std::string& vehicle) -> const TruthHistory& { return truth_of(vehicle); };
@@ -113,4 +113,4 @@ void Scoring::warn_of_silence(sim::Warnings& warnings) const {
   }
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -13,7 +13,7 @@
 #include "sim/config/warnings.hpp"
 #include "sim/world/world.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Scores a run by the `metrics:` of its world, from the truth, estimates on the bus of their vehicle, contacts and
 /// packets.  Scoring does not change the run.
@@ -62,4 +62,4 @@ class Scoring {
   FirstContacts contacts_;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -8,7 +8,7 @@
 #include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -138,4 +138,4 @@ std::optional<Support> support_of(const sim::World& world, const sim::Vehicle& v
   return support;
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -11,7 +11,7 @@ class Vehicle;
 class World;
 }  // namespace sim
 
-namespace tools {
+namespace experiment {
 
 /// How a vehicle stands on its contacts in the last step.  Margins are signed distances to the nearest edge of the
 /// support polygon, seen from above, m: negative outside.
@@ -39,4 +39,4 @@ std::vector<Eigen::Vector2d> convex_hull_of(std::vector<Eigen::Vector2d> points)
 /// or more: positive inside.
 double margin_in(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& point);
 
-}  // namespace tools
+}  // namespace experiment

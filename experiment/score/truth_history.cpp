@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiment/score/truth_history.hpp"
 
-namespace tools {
+namespace experiment {
 
 sim::Time true_time_of(const sim::World& world, const sim::Vehicle& vehicle, std::int64_t utime) {
   // Clock errors are known near the present only, so the difference of the stamp from the present clock reading is
@@ -48,4 +48,4 @@ std::optional<TruthHistory::Truth> TruthHistory::at(sim::Time time) const {
   return recent_[slot_of(step)];
 }
 
-}  // namespace tools
+}  // namespace experiment

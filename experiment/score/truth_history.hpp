@@ -8,7 +8,7 @@
 #include "sim/state/state_archive.hpp"
 #include "sim/world/world.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Returns the true simulated time at which a vehicle's clock showed `utime`.  Accepts any 64 bits: out-of-range values
 /// are clamped to the smallest or largest time.
@@ -41,4 +41,4 @@ class TruthHistory {
   std::vector<Truth> recent_;  ///< ring by step number
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -20,7 +20,7 @@
 #include "shoal/sim_hash_t.hpp"
 #include "shoal/sim_inputs_t.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -245,4 +245,4 @@ RecordTail write_record_tail(const std::string& record, const std::string& out, 
   return tail;
 }
 
-}  // namespace tools
+}  // namespace experiment

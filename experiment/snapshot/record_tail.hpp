@@ -6,7 +6,7 @@
 
 #include "shoal/sim_info_t.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// End of a record as a separate log.
 struct RecordTail {
@@ -34,4 +34,4 @@ struct TailOptions {
 /// cannot be written.
 RecordTail write_record_tail(const std::string& record, const std::string& out, const TailOptions& options);
 
-}  // namespace tools
+}  // namespace experiment

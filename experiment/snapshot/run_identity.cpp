@@ -14,7 +14,7 @@
 #include "sim/base/state_hash.hpp"
 #include "sim/world_file/data_files.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -98,4 +98,4 @@ void allow_files(const std::string& text, sim::LoadOptions& load) {
   }
 }
 
-}  // namespace tools
+}  // namespace experiment

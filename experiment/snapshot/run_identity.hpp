@@ -7,7 +7,7 @@
 #include "sim/config/config_node.hpp"
 #include "sim/world_file/load_world.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Returns what determines the last bits of a result besides versions: processor class and C library, such as
 /// `x86-64-v3, glibc 2.36`.
@@ -24,4 +24,4 @@ std::vector<std::string> changed_files(const std::string& text);
 /// had access to their content.
 void allow_files(const std::string& text, sim::LoadOptions& load);
 
-}  // namespace tools
+}  // namespace experiment

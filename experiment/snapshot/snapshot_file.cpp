@@ -19,7 +19,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/state/state_archive.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -157,4 +157,4 @@ void check_files(const Snapshot& snapshot, const std::string& path) {
   throw SnapshotFileError(text);
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -8,7 +8,7 @@
 
 #include "sim/bus/bus.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Error of a file that is not a snapshot, or one that this program cannot continue from.  what() contains file, rule
 /// and value.
@@ -55,4 +55,4 @@ void check_version(const Snapshot& snapshot, const std::string& path, const std:
 /// Throws SnapshotFileError when a file that its world names is missing or has changed.
 void check_files(const Snapshot& snapshot, const std::string& path);
 
-}  // namespace tools
+}  // namespace experiment

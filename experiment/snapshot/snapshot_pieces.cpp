@@ -7,7 +7,7 @@
 
 #include "shoal/message_codec.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -83,4 +83,4 @@ std::string SnapshotPieces::missing() const {
                                      last + 1, first_->pieces, first_->step);
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -10,7 +10,7 @@
 #include "shoal/sim_snapshot_t.hpp"
 #include "sim/bus/bus.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Splits a snapshot into messages for `sim.snapshot`, each of at most 60 kB, so that one fits into a datagram.  The
 /// scores are omitted, because they do not influence the run.
@@ -36,4 +36,4 @@ class SnapshotPieces {
   sim::Bytes bytes_;
 };
 
-}  // namespace tools
+}  // namespace experiment

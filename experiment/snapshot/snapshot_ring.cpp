@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -256,4 +256,4 @@ std::optional<std::int64_t> SnapshotRing::oldest() const {
   return families_.empty() ? std::nullopt : std::optional(families_.front().whole.step);
 }
 
-}  // namespace tools
+}  // namespace experiment

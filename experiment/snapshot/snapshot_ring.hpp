@@ -10,7 +10,7 @@
 
 #include "sim/bus/bus.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Snapshots of the last seconds in memory.  Every few snapshots one is stored in full; the others are stored as the
 /// difference from the preceding full one.  They are compressed when space is short.  Number and bytes are limited: the
@@ -61,4 +61,4 @@ class SnapshotRing {
   std::size_t bytes_ = 0, count_ = 0;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -32,4 +32,4 @@ std::vector<std::string> entities_only_in(const sim::WorldConfig& world, const s
   return entities;
 }
 
-}  // namespace tools
+}  // namespace experiment

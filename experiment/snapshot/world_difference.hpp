@@ -6,10 +6,10 @@
 
 #include "sim/world_file/load_world.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Returns the entities that only the first world has, by name: `object 'box'`, `vehicle 'r1'`, `device 'r1/lidar'`,
 /// `event 'storm'`.
 std::vector<std::string> entities_only_in(const sim::WorldConfig& world, const sim::WorldConfig& other);
 
-}  // namespace tools
+}  // namespace experiment

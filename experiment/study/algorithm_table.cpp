@@ -13,7 +13,7 @@
 #include "experiment/study/study_tables.hpp"
 #include "sim/random/random.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -317,4 +317,4 @@ nlohmann::ordered_json AlgorithmTable::json() const {
   return json;
 }
 
-}  // namespace tools
+}  // namespace experiment

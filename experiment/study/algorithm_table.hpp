@@ -7,7 +7,7 @@
 
 #include "experiment/study/study_results.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Whether the covariance of an algorithm is consistent, by the 95 % interval of the mean NEES over the seeds.
 enum class Trust {
@@ -73,4 +73,4 @@ class AlgorithmTable {
   std::vector<AlgorithmPair> winners_;  ///< of each world, the second best over the best
 };
 
-}  // namespace tools
+}  // namespace experiment

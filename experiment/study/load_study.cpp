@@ -21,7 +21,7 @@
 #include "sim/world_file/file_kind.hpp"
 #include "sim/world_file/rule_list.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -313,4 +313,4 @@ std::optional<SharedPort> find_shared_port(const LoadedStudy& study) {
   return std::nullopt;
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -10,7 +10,7 @@
 #include "experiment/study/study_config.hpp"
 #include "sim/world_file/load_world.hpp"
 
-namespace tools {
+namespace experiment {
 
 struct LoadedStudy {
   StudyConfig config;
@@ -45,4 +45,4 @@ struct SharedPort {
 /// Finds a port whose path has no `{run}`; runs with `launch` open their serial ports.
 std::optional<SharedPort> find_shared_port(const LoadedStudy& study);
 
-}  // namespace tools
+}  // namespace experiment

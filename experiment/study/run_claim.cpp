@@ -10,7 +10,7 @@
 #include "bridges/base/file_lock.hpp"
 #include "experiment/files/no_links.hpp"
 
-namespace tools {
+namespace experiment {
 
 RunClaim::RunClaim(const std::string& root, const std::string& directory) {
   make_folders(root, directory);
@@ -26,4 +26,4 @@ RunClaim::RunClaim(const std::string& root, const std::string& directory) {
   if (owner_) file_ = bridges::FileDescriptor();
 }
 
-}  // namespace tools
+}  // namespace experiment

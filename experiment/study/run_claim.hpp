@@ -6,7 +6,7 @@
 
 #include "bridges/base/file_descriptor.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Claim on the folder of a run against other processes that execute the same study.  It ends with the process, however
 /// that ends, and on network file systems too as far as they have locks.
@@ -23,4 +23,4 @@ class RunClaim {
   std::optional<std::string> owner_;
 };
 
-}  // namespace tools
+}  // namespace experiment

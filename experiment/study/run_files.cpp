@@ -8,7 +8,7 @@
 #include "experiment/files/no_links.hpp"
 #include "experiment/study/study_algorithms.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -71,4 +71,4 @@ void remove_marks(const StudyRun& run) {
   }
 }
 
-}  // namespace tools
+}  // namespace experiment

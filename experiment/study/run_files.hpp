@@ -6,7 +6,7 @@
 
 #include "experiment/study/study_runs.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Files by which a study finds the state of a run, in the folder of the run.  Each is written as a whole: after a
 /// kill or a loss of power it is complete or absent.  Writing and removing throw std::runtime_error for a symbolic
@@ -41,4 +41,4 @@ void read_ended_run(const LoadedStudy& study, StudyRun& run);
 std::string directory_of(const LoadedStudy& study, const std::string& output, std::size_t in_case, std::size_t point,
                          std::int64_t seed);
 
-}  // namespace tools
+}  // namespace experiment

@@ -16,7 +16,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/config/shipped_files.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -213,4 +213,4 @@ void add_algorithm_figures(const LoadedStudy& study, StudyRun& run) {
   }
 }
 
-}  // namespace tools
+}  // namespace experiment

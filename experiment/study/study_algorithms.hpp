@@ -7,7 +7,7 @@
 #include "experiment/results/run_record.hpp"
 #include "sim/world_file/load_world.hpp"
 
-namespace tools {
+namespace experiment {
 
 struct LoadedStudy;
 struct StudyRun;
@@ -60,4 +60,4 @@ std::vector<std::string> arguments_of_algorithms(const LoadedStudy& study, const
 /// std::runtime_error with the file and what is wrong.
 void add_algorithm_figures(const LoadedStudy& study, StudyRun& run);
 
-}  // namespace tools
+}  // namespace experiment

@@ -24,7 +24,7 @@
 #include "experiment/study/study_algorithms.hpp"
 #include "experiment/study/study_runs.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -334,4 +334,4 @@ void run_study(const LoadedStudy& study, const StudyOptions& options, std::vecto
   StudyChildren(study, options, runs, which, progress).run();
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -16,7 +16,7 @@
 #include "sim/config/yaml_writer.hpp"
 #include "sim/world_file/rule_list.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -166,4 +166,4 @@ void StudyConfig::check_design(sim::ParamReader& in) const {
   if (factors.empty() && in.has("design")) in.error("design", "'design' needs 'factors'");
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -11,7 +11,7 @@
 #include "sim/config/param_reader.hpp"
 #include "sim/world_file/rule_expression.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Variant of the world of a study, or one of its worlds.
 struct StudyCase {
@@ -66,4 +66,4 @@ struct StudyConfig {
   void check_design(sim::ParamReader& in) const;
 };
 
-}  // namespace tools
+}  // namespace experiment

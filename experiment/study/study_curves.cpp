@@ -11,7 +11,7 @@
 
 #include "experiment/study/study_results.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -85,4 +85,4 @@ std::vector<Band> bands_of(const std::vector<Curve>& curves, std::size_t count) 
   return bands;
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 /// Point of the error curve of one run; x does not decrease along the curve.
 struct CurvePoint {
@@ -28,4 +28,4 @@ Curve read_error_curve(const std::string& path, const std::string& metric, const
 /// at least half of the runs do.
 std::vector<Band> bands_of(const std::vector<Curve>& curves, std::size_t count = 200);
 
-}  // namespace tools
+}  // namespace experiment

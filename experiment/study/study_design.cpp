@@ -11,7 +11,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/random/random.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -180,4 +180,4 @@ std::vector<std::string> point_sets(const std::vector<StudyFactor>& factors, con
   return sets;
 }
 
-}  // namespace tools
+}  // namespace experiment

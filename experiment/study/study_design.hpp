@@ -8,7 +8,7 @@
 
 #include "sim/config/param_reader.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Setting of the world that a design varies: a list of values, or a range.
 struct StudyFactor {
@@ -60,4 +60,4 @@ std::vector<StudyPoint> design_points(const StudyDesign& design, const std::vect
 /// Returns `path=value` of each setting of a point.
 std::vector<std::string> point_sets(const std::vector<StudyFactor>& factors, const StudyPoint& point);
 
-}  // namespace tools
+}  // namespace experiment

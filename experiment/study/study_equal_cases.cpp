@@ -6,7 +6,7 @@
 
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -69,4 +69,4 @@ std::string equal_cases_text(const EqualCases& group) {
                               : "although their settings differ: check that the settings have an effect");
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -6,7 +6,7 @@
 
 #include "experiment/study/study_runs.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Cases of a study with equal results.
 struct EqualCases {
@@ -22,4 +22,4 @@ std::vector<EqualCases> equal_cases(const LoadedStudy& study, const std::vector<
 /// Returns a readable sentence about a group.
 std::string equal_cases_text(const EqualCases& group);
 
-}  // namespace tools
+}  // namespace experiment

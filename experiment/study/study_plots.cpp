@@ -16,7 +16,7 @@
 #include "experiment/study/study_results.hpp"
 #include "sim/base/log.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -173,4 +173,4 @@ void write_study(const std::string& directory, const LoadedStudy& study, const s
   write_whole_file(directory + "/study.json", results.to_json(exit_code));
 }
 
-}  // namespace tools
+}  // namespace experiment

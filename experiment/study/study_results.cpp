@@ -16,7 +16,7 @@
 #include "experiment/study/study_rules.hpp"
 #include "experiment/study/study_tables.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -330,4 +330,4 @@ std::string StudyResults::to_json(int exit_code) const {
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -13,7 +13,7 @@
 #include "experiment/score/scoring.hpp"
 #include "experiment/study/study_runs.hpp"
 
-namespace tools {
+namespace experiment {
 
 class AlgorithmTable;
 
@@ -114,4 +114,4 @@ void check_outputs(const std::string& directory, const StudyConfig& config);
 void write_study(const std::string& directory, const LoadedStudy& study, const std::vector<StudyRun>& runs,
                  const StudyResults& results, int exit_code);
 
-}  // namespace tools
+}  // namespace experiment

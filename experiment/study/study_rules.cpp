@@ -7,7 +7,7 @@
 #include "experiment/study/study_config.hpp"
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace experiment {
 
 const std::vector<std::string>& statistic_words() {
   static const std::vector<std::string> words{"mean", "std", "min", "max", "median"};
@@ -61,4 +61,4 @@ std::optional<sim::RuleProblem> StudyRuleNames::name_problem(const std::string& 
   return problem;
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -10,7 +10,7 @@
 #include "sim/world_file/load_world.hpp"
 #include "sim/world_file/rule_expression.hpp"
 
-namespace tools {
+namespace experiment {
 
 struct StudyCase;
 
@@ -39,4 +39,4 @@ class StudyRuleNames final : public sim::RuleNames {
 /// Splits `CASE.FIGURE` into case and figure.
 std::pair<std::string, std::string> case_and_figure(const std::string& name);
 
-}  // namespace tools
+}  // namespace experiment

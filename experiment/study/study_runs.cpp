@@ -15,7 +15,7 @@
 #include "experiment/study/study_results.hpp"
 #include "sim/random/random.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -182,4 +182,4 @@ void drop_needless_seeds(LoadedStudy& study, std::vector<StudyRun>& runs) {
   study.config.seeds.resize(needed);
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -10,7 +10,7 @@
 #include "experiment/results/run_record.hpp"
 #include "experiment/study/load_study.hpp"
 
-namespace tools {
+namespace experiment {
 
 struct StudyOptions {
   std::string output;  ///< folder of the study
@@ -90,4 +90,4 @@ std::string until_text(const LoadedStudy& study, const std::vector<StudyRun>& ru
 /// Removes the seeds that are not needed from a study and its runs.
 void drop_needless_seeds(LoadedStudy& study, std::vector<StudyRun>& runs);
 
-}  // namespace tools
+}  // namespace experiment

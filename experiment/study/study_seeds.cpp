@@ -12,7 +12,7 @@
 
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -150,4 +150,4 @@ std::vector<std::int64_t> parse_seeds(const std::string& text) {
   return seeds;
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -11,7 +11,7 @@
 #include "experiment/study/run_files.hpp"
 #include "experiment/study/study_rules.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -274,4 +274,4 @@ std::string failed_text(const StudyResults& results, const std::string& director
   return text;
 }
 
-}  // namespace tools
+}  // namespace experiment

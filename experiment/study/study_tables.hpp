@@ -8,7 +8,7 @@
 
 #include "experiment/study/study_results.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Parts of the tables of a study, for StudyResults.
 
@@ -52,4 +52,4 @@ std::string comparisons_text(const std::vector<StudyComparison>& comparisons);
 /// Returns a line for each of the first failed runs, with the command that repeats it in its folder.
 std::string failed_text(const StudyResults& results, const std::string& directory);
 
-}  // namespace tools
+}  // namespace experiment

@@ -10,7 +10,7 @@
 #include "experiment/study/study_rules.hpp"
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -88,4 +88,4 @@ bool is_certain(const StudyUntil& until, const std::vector<double>& values) {
   return half < until.bound * (until.relative ? std::fabs(statistics.mean) : 1);
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -8,7 +8,7 @@
 
 #include "sim/config/param_reader.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Condition that ends a study before its last seed: `ci(FIGURE) < 5 %`.
 struct StudyUntil {
@@ -35,4 +35,4 @@ std::optional<StudyUntil> read_until(sim::ParamReader& in, const std::vector<std
 /// a value is NaN, or there are less than two.
 bool is_certain(const StudyUntil& until, const std::vector<double>& values);
 
-}  // namespace tools
+}  // namespace experiment

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <string_view>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -88,4 +88,4 @@ std::optional<KeyEvent> KeyEvents::next(char byte) {
   return event;
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -6,7 +6,7 @@
 
 #include "experiment/terminal/terminal_parser.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// What happened to a key.
 struct KeyEvent {
@@ -39,4 +39,4 @@ class KeyEvents {
   bool has_reports_ = false;
 };
 
-}  // namespace tools
+}  // namespace experiment

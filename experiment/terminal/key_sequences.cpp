@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiment/terminal/key_sequences.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -32,4 +32,4 @@ std::string KeySequences::alone(Clock::time_point now) {
   return {escape_key};
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -6,7 +6,7 @@
 
 #include "experiment/terminal/terminal_parser.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Separates keys of one byte from keys that a terminal sends as several, such as arrows, Home and F1.  These are
 /// discarded.
@@ -27,4 +27,4 @@ class KeySequences {
   Clock::time_point begun_{};
 };
 
-}  // namespace tools
+}  // namespace experiment

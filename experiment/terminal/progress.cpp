@@ -9,7 +9,7 @@
 
 #include "sim/base/text_layout.hpp"
 
-namespace tools {
+namespace experiment {
 
 Progress::Progress(double duration_s, bool quiet)
     : duration_s_(duration_s), quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0), last_(Clock::now()) {}
@@ -76,4 +76,4 @@ void Progress::restart(sim::Time now) {
   last_now_ = now;
 }
 
-}  // namespace tools
+}  // namespace experiment

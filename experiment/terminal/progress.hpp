@@ -7,7 +7,7 @@
 #include "sim/base/time.hpp"
 #include "sim/run/run_control.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Shows the progress of a run: one live line on a terminal, a line every 10 s in a pipe.
 class Progress {
@@ -40,4 +40,4 @@ class Progress {
   std::uint64_t last_messages_ = 0;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -9,7 +9,7 @@
 #include <atomic>
 #include <chrono>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -111,4 +111,4 @@ std::optional<char> TerminalKeys::next() {
   return key;
 }
 
-}  // namespace tools
+}  // namespace experiment

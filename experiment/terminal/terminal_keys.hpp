@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace tools {
+namespace experiment {
 
 /// Reads single keys from the terminal during a run.  Restores the settings of the terminal on destruction, when the
 /// program is stopped (Ctrl-Z) and when a signal kills it.  In the background nothing is read, so that the job is not
@@ -29,4 +29,4 @@ class TerminalKeys {
   std::chrono::steady_clock::time_point check_at_{};  ///< time of the next check of the settings
 };
 
-}  // namespace tools
+}  // namespace experiment

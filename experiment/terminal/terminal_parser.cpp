@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -48,4 +48,4 @@ std::optional<TerminalPiece> TerminalParser::next(char byte) {
   return TerminalPiece{TerminalPiece::Kind::sequence, byte, std::exchange(parameters_, {})};
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-namespace tools {
+namespace experiment {
 
 /// Piece of what a terminal sends.
 struct TerminalPiece {
@@ -36,4 +36,4 @@ class TerminalParser {
   std::string parameters_;
 };
 
-}  // namespace tools
+}  // namespace experiment

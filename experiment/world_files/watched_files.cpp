@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiment/world_files/watched_files.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -53,4 +53,4 @@ bool WatchedFiles::changed() {
   return changed_;
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -10,7 +10,7 @@
 
 #include "sim/config/config_node.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Returns the files that a tree was read from.
 std::set<std::string> files_of(const sim::ConfigNode& tree);
@@ -41,4 +41,4 @@ class WatchedFiles {
   bool changed_ = false;
 };
 
-}  // namespace tools
+}  // namespace experiment

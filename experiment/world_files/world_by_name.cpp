@@ -9,7 +9,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/config/shipped_files.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -116,4 +116,4 @@ std::string file_by_name(std::initializer_list<ShippedKind> kinds, const std::st
   refuse_name(kinds, given);
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 /// YAML file that comes with the program.
 struct ShippedFile {
@@ -29,4 +29,4 @@ inline std::string world_file(const std::string& given) {
   return file_by_name({ShippedKind::world}, given);
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -16,7 +16,7 @@
 #include "sim/world/world.hpp"
 #include "sim/world/world_state.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -233,13 +233,13 @@ void Connector::search(const Route& first, Connection& connection) {
   const auto share = [](double value, Range range) {
     return std::clamp((value - range.low) / (range.high - range.low), 0.0, 1.0);
   };
-  Point start{share(first.first_s, ranges[0]), share(first.second_s, ranges[1])};
+  experiment::Point start{share(first.first_s, ranges[0]), share(first.second_s, ranges[1])};
   for (std::size_t j = 0; j < first.via.size(); ++j) start.push_back(share(first.via[j].second, ranges[j + 2]));
-  CmaEs cma_es(start, {.population = 0, .sigma = search_sigma, .seed = options_.seed});
+  experiment::CmaEs cma_es(start, {.population = 0, .sigma = search_sigma, .seed = options_.seed});
   // Generations until one arrives everywhere.
   for (int tried = 0; tried + cma_es.population() <= options_.candidates;) {
     std::vector<double> values;
-    for (const Point& point : cma_es.propose()) {
+    for (const experiment::Point& point : cma_es.propose()) {
       const auto at = [&](std::size_t i) { return ranges[i].low + point[i] * (ranges[i].high - ranges[i].low); };
       Route route{first.via, at(0), at(1)};
       for (std::size_t j = 0; j < route.via.size(); ++j) route.via[j].second = at(j + 2);
@@ -300,4 +300,4 @@ sim::JointMotion held_pose(const std::string& name, const std::string& vehicle, 
   return motion;
 }
 
-}  // namespace tools
+}  // namespace motion

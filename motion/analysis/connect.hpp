@@ -12,7 +12,7 @@
 #include "sim/motion/motion.hpp"
 #include "sim/world_file/world_config.hpp"
 
-namespace tools {
+namespace motion {
 
 /// How a connection of two poses is searched.
 struct ConnectOptions {
@@ -113,4 +113,4 @@ class Connector {
 /// Returns a motion that holds joint values.
 sim::JointMotion held_pose(const std::string& name, const std::string& vehicle, const sim::JointValues& values);
 
-}  // namespace tools
+}  // namespace motion

@@ -19,7 +19,7 @@
 #include "sim/vehicle/mounted_device.hpp"
 #include "sim/world/world.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -78,7 +78,7 @@ class ComparedModel {
     }
     if (fell_s_ >= 0) return true;
     if (tilt_rad(vehicle_) > fallen_rad || first_body_touches(world_, vehicle_)) fell_s_ = since_start_s();
-    if (const auto support = support_of(world_, vehicle_))
+    if (const auto support = experiment::support_of(world_, vehicle_))
       least_static_margin_m_ = std::fmin(least_static_margin_m_, support->static_margin_m);
     return true;
   }
@@ -160,4 +160,4 @@ Divergence divergence_of(const sim::WorldConfig& world, const std::string& vehic
   return divergence;
 }
 
-}  // namespace tools
+}  // namespace motion

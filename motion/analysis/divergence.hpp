@@ -7,7 +7,7 @@
 #include "sim/motion/motion.hpp"
 #include "sim/world_file/world_config.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Differences of the models of a comparison, one quantity at a time.
 struct DivergenceOptions {
@@ -47,4 +47,4 @@ struct Divergence {
 Divergence divergence_of(const sim::WorldConfig& world, const std::string& vehicle, const sim::JointMotion& motion,
                          const DivergenceOptions& options);
 
-}  // namespace tools
+}  // namespace motion

@@ -8,23 +8,24 @@
 #include "experiment/optimize/genetic.hpp"
 #include "sim/base/thread_pool.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
-std::unique_ptr<Optimizer> optimizer_of(const EvolveOptions& options, const Point& start) {
+std::unique_ptr<experiment::Optimizer> optimizer_of(const EvolveOptions& options, const experiment::Point& start) {
   switch (options.method) {
     case SearchMethod::cma_es:
-      return std::make_unique<CmaEs>(
-          start, CmaEs::Options{.population = options.population, .sigma = options.sigma, .seed = options.seed});
+      return std::make_unique<experiment::CmaEs>(
+          start,
+          experiment::CmaEs::Options{.population = options.population, .sigma = options.sigma, .seed = options.seed});
     case SearchMethod::genetic:
       break;
   }
-  GeneticAlgorithm::Options genetic;
+  experiment::GeneticAlgorithm::Options genetic;
   genetic.population = options.population;
   genetic.sigma = options.sigma;
   genetic.seed = options.seed;
-  return std::make_unique<GeneticAlgorithm>(start, genetic);
+  return std::make_unique<experiment::GeneticAlgorithm>(start, genetic);
 }
 
 }  // namespace
@@ -44,7 +45,7 @@ Evolution::Evolution(const sim::WorldConfig& world, const std::string& vehicle, 
                                        : drawn_perturbations(options.worlds, options.seed, "evolve/worlds");
   for (const Perturbation& one : perturbations_) worlds_.push_back(world_of(one));
   // The start of the search.
-  Point point;
+  experiment::Point point;
   for (const GaitNumber& number : gait_.numbers())
     point.push_back((number.start - number.low) / (number.high - number.low));
   optimizer_ = optimizer_of(options, point);
@@ -57,7 +58,7 @@ sim::WorldConfig Evolution::world_of(const Perturbation& perturbation) const {
   return perturbed(world_, vehicle_, perturbation);
 }
 
-Candidate Evolution::candidate_at(const Point& point, int number) const {
+Candidate Evolution::candidate_at(const experiment::Point& point, int number) const {
   Candidate candidate;
   candidate.number = number;
   candidate.point = point;
@@ -92,7 +93,7 @@ void Evolution::try_all(std::vector<Candidate>& candidates) {
   // The better half in the other worlds.
   std::vector<double> values;
   for (const Candidate& candidate : candidates) values.push_back(candidate.value_mps);
-  std::vector<std::size_t> better = by_rank(values);
+  std::vector<std::size_t> better = experiment::by_rank(values);
   better.resize((candidates.size() + 1) / 2);
   pairs.clear();
   for (const std::size_t i : better)
@@ -117,7 +118,7 @@ void Evolution::choose_first_world(const std::vector<Candidate>& candidates) {
 bool Evolution::advance() {
   if (tried_ + options_.population > options_.candidates) return false;
   std::vector<Candidate> candidates;
-  for (const Point& point : optimizer_->propose()) candidates.push_back(candidate_at(point, ++tried_));
+  for (const experiment::Point& point : optimizer_->propose()) candidates.push_back(candidate_at(point, ++tried_));
   try_all(candidates);
   // The others come after those that walked in all worlds.
   double least_mps = 1e9;
@@ -127,7 +128,7 @@ bool Evolution::advance() {
   for (const Candidate& candidate : candidates)
     values.push_back(candidate.is_complete() ? candidate.value_mps : std::min(candidate.value_mps, least_mps - 1e-6));
   optimizer_->learn(values);
-  best_of_generation_ = candidates[by_rank(values).front()];
+  best_of_generation_ = candidates[experiment::by_rank(values).front()];
   if (best_of_generation_.value_mps > best_.value_mps) best_ = best_of_generation_;
   choose_first_world(candidates);
   return true;
@@ -143,4 +144,4 @@ std::vector<Walk> Evolution::walks_of_best(const std::vector<Perturbation>& worl
   return walks;
 }
 
-}  // namespace tools
+}  // namespace motion

@@ -13,7 +13,7 @@
 #include "motion/gait/gait_family.hpp"
 #include "sim/world_file/world_config.hpp"
 
-namespace tools {
+namespace motion {
 
 enum class SearchMethod { cma_es, genetic };
 
@@ -32,7 +32,7 @@ struct EvolveOptions {
 /// A gait and its walks.
 struct Candidate {
   int number = 0;  ///< from 1; 0: the start of the search
-  Point point;
+  experiment::Point point;
   std::vector<double> values;              ///< numbers of the gait
   std::vector<std::optional<Walk>> walks;  ///< by world; unset: not tried there
   double value_mps = 0;                    ///< of the worst walk
@@ -69,7 +69,7 @@ class Evolution {
  private:
   sim::WorldConfig world_of(const Perturbation& perturbation) const;
   void walk_in(std::vector<Candidate>& candidates, const std::vector<std::pair<std::size_t, std::size_t>>& pairs);
-  Candidate candidate_at(const Point& point, int number) const;
+  Candidate candidate_at(const experiment::Point& point, int number) const;
   void try_all(std::vector<Candidate>& candidates);
   void choose_first_world(const std::vector<Candidate>& candidates);
 
@@ -79,10 +79,10 @@ class Evolution {
   sim::WorldConfig world_;
   std::vector<Perturbation> perturbations_;
   std::vector<sim::WorldConfig> worlds_;
-  std::unique_ptr<Optimizer> optimizer_;
+  std::unique_ptr<experiment::Optimizer> optimizer_;
   std::size_t first_world_ = 0;
   int tried_ = 0, walks_ = 0;
   Candidate start_, best_, best_of_generation_;
 };
 
-}  // namespace tools
+}  // namespace motion

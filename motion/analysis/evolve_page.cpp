@@ -8,7 +8,7 @@
 
 #include "experiment/files/html.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -31,7 +31,8 @@ struct ImageAxis {
 };
 
 std::string label_at(double x, double y, const char* anchor, const std::string& text) {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor, html_text(text));
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor,
+                     experiment::html_text(text));
 }
 
 std::string grid_line(double x1, double y1, double x2, double y2) {
@@ -81,14 +82,15 @@ std::string evolve_curve(const std::vector<EvolveGeneration>& generations) {
 }
 
 std::string evolve_page(const EvolveReport& report) {
-  std::string body = "<h1>" + html_text(report.title) + "</h1>\n" + html_table({"", ""}, report.facts);
+  std::string body =
+      "<h1>" + experiment::html_text(report.title) + "</h1>\n" + experiment::html_table({"", ""}, report.facts);
   if (const std::string curve = evolve_curve(report.generations); !curve.empty())
     body += "<h2>Search</h2>\n<figure>" + curve +
             "<figcaption>Value in the worst world: the best so far (line), and the best of each generation (points)."
             "</figcaption></figure>\n";
-  body += "<h2>The best gait in each world</h2>\n" + html_table(report.world_head, report.worlds);
-  body += "<h2>Its numbers</h2>\n" + html_table({"number", "best", "start"}, report.numbers);
-  return html_page(report.title, body);
+  body += "<h2>The best gait in each world</h2>\n" + experiment::html_table(report.world_head, report.worlds);
+  body += "<h2>Its numbers</h2>\n" + experiment::html_table({"number", "best", "start"}, report.numbers);
+  return experiment::html_page(report.title, body);
 }
 
-}  // namespace tools
+}  // namespace motion

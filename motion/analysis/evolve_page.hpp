@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace tools {
+namespace motion {
 
 /// State of a search after a generation.
 struct EvolveGeneration {
@@ -29,4 +29,4 @@ std::string evolve_curve(const std::vector<EvolveGeneration>& generations);
 /// Returns a self-contained HTML page.
 std::string evolve_page(const EvolveReport& report);
 
-}  // namespace tools
+}  // namespace motion

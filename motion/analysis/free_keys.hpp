@@ -5,7 +5,7 @@
 #include "sim/motion/motion.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Gaits with the keys of a motion file that loops: the numbers are the times between its keys, and the value of each
 /// joint in each key.  The search starts at the file.  The end of a loop keeps the values of its start.
@@ -33,4 +33,4 @@ class FreeKeys final : public GaitFamily {
   std::vector<std::pair<Value, Value>> equal_;  ///< second is that of the first: the seam of the loop
 };
 
-}  // namespace tools
+}  // namespace motion

@@ -16,7 +16,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/motion/motion_frames.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -241,4 +241,4 @@ sim::JointMotion mended(const sim::JointMotion& motion, const sim::VehicleConfig
   return with_tracks(motion, std::move(tracks), new_time);
 }
 
-}  // namespace tools
+}  // namespace motion

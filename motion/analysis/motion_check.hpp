@@ -7,7 +7,7 @@
 #include "sim/motion/motion.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Rule that a motion breaks.
 enum class MotionRule { unknown_joint, low, high, two_joint_low, two_joint_high, velocity, acceleration, loop_seam };
@@ -32,4 +32,4 @@ std::vector<MotionFinding> check_motion(const sim::JointMotion& motion, const si
 /// velocities.  Limits of two joints and accelerations are not mended.
 sim::JointMotion mended(const sim::JointMotion& motion, const sim::VehicleConfig& vehicle);
 
-}  // namespace tools
+}  // namespace motion

@@ -6,7 +6,7 @@
 
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -103,4 +103,4 @@ CourseDifference difference_of(const std::vector<CoursePoint>& first, const std:
   return difference;
 }
 
-}  // namespace tools
+}  // namespace motion

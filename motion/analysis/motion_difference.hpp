@@ -9,7 +9,7 @@
 #include "motion/analysis/motion_stage.hpp"
 #include "sim/motion/motion.hpp"
 
-namespace tools {
+namespace motion {
 
 /// How the values of a joint differ between two motions, at the frames of the first one: rad, or m of a slider.
 struct JointDifference {
@@ -46,4 +46,4 @@ struct CourseDifference {
 };
 CourseDifference difference_of(const std::vector<CoursePoint>& first, const std::vector<CoursePoint>& second);
 
-}  // namespace tools
+}  // namespace motion

@@ -12,7 +12,7 @@
 #include "sim/config/yaml_writer.hpp"
 #include "sim/motion/motion_frames.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -437,4 +437,4 @@ JointMotion with_pose(const JointMotion& motion, const std::string& name, double
   return changed;
 }
 
-}  // namespace tools
+}  // namespace motion

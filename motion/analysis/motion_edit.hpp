@@ -8,7 +8,7 @@
 
 #include "sim/motion/motion.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Values that the frames of a motion may have: about as much CSV as can be read.
 constexpr double max_frame_values = 2e7;
@@ -61,4 +61,4 @@ sim::JointMotion with_pose(const sim::JointMotion& motion, const std::string& na
 sim::JointMotion with_tracks(const sim::JointMotion& motion, std::vector<sim::MotionTrack> tracks,
                              const std::function<double(double)>& time_of);
 
-}  // namespace tools
+}  // namespace motion

@@ -19,7 +19,7 @@
 #include "experiment/files/scratch_directory.hpp"
 #include "sim/motion/motion_frames.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -85,7 +85,7 @@ void copy_over(const fs::path& from, const fs::path& to) {
   std::ifstream file(from, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   if (!file) throw std::runtime_error("'" + from.string() + "' cannot be read");
-  write_whole_file(to.string(), text);
+  experiment::write_whole_file(to.string(), text);
 }
 
 /// Content of a motion file and of the CSV file beside it.
@@ -94,14 +94,14 @@ struct Content {
   std::optional<std::string> frames;
 
   void write_to(const std::string& path) const {
-    if (frames) write_whole_file(frames_path(path), *frames);
-    write_whole_file(path, text);
+    if (frames) experiment::write_whole_file(frames_path(path), *frames);
+    experiment::write_whole_file(path, text);
   }
 };
 
 /// Reads the content once.  Throws EditError when that fails.
 void check_readable(const std::string& path, const Content& content) {
-  const ScratchDirectory scratch;
+  const experiment::ScratchDirectory scratch;
   const std::string trial = (scratch.path / fs::path(path).filename()).string();
   content.write_to(trial);
   try {
@@ -181,7 +181,7 @@ Version store(const std::string& path, const std::string& folder, const std::str
   const Version version{number, fs::path(folder) / name};
   try {
     if (has_frames(path)) copy_over(frames_path(path), frames_of(version));
-    if (!operation.empty()) write_whole_file(operation_of(version).string(), operation + "\n");
+    if (!operation.empty()) experiment::write_whole_file(operation_of(version).string(), operation + "\n");
     copy_over(path, version.file);
   } catch (...) {
     remove(version);
@@ -230,7 +230,7 @@ sim::JointMotion MotionHistory::previous() const {
   const std::vector<Version> found = versions(folder(), "undo");
   if (found.empty()) throw std::runtime_error("'" + path_ + "' has no earlier version");
   // It names its frames as they are named beside the file.
-  const ScratchDirectory scratch;
+  const experiment::ScratchDirectory scratch;
   const fs::path file = scratch.path / fs::path(path_).filename();
   copy_over(found.back().file, file);
   copy_over(frames_of(found.back()), frames_path(file.string()));
@@ -250,4 +250,4 @@ MirrorRule mirror_rule(const sim::VehicleConfig& vehicle) {
                   "' does not say how its motions are mirrored: 'mirror' of a joint_group");
 }
 
-}  // namespace tools
+}  // namespace motion

@@ -7,7 +7,7 @@
 #include "sim/motion/motion.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Keys above which a motion is written as a file of frames.
 constexpr std::size_t max_written_keys = 1000;
@@ -55,4 +55,4 @@ class MotionHistory {
 /// Returns how motions of a vehicle are mirrored, from its joint_group.  Throws EditError when it does not say.
 MirrorRule mirror_rule(const sim::VehicleConfig& vehicle);
 
-}  // namespace tools
+}  // namespace motion

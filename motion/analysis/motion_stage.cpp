@@ -12,7 +12,7 @@
 #include "sim/world/world_editor.hpp"
 #include "sim/world/world_state.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -63,7 +63,7 @@ MotionStage::MotionStage(const StageOptions& options, const std::function<sim::J
   loaded_ =
       options.tree ? sim::load_world_tree(*options.tree, options.world, load) : sim::load_world(options.world, load);
   world_ = std::make_unique<sim::World>(loaded_.config, bus_);
-  if (options.scores) scoring_ = std::make_unique<Scoring>(*world_);
+  if (options.scores) scoring_ = std::make_unique<experiment::Scoring>(*world_);
   // Find the player.
   for (const auto& vehicle : world_->vehicles())
     for (const sim::MountedDevice* device : vehicle->devices()) {
@@ -108,8 +108,8 @@ devices::MotionPlayer& MotionStage::player_in(sim::World& world) const {
   return const_cast<devices::MotionPlayer&>(player);
 }
 
-std::optional<Support> MotionStage::support() {
-  if (watched_generation_ == world_->generation()) return support_of(*world_, vehicle());
+std::optional<experiment::Support> MotionStage::support() {
+  if (watched_generation_ == world_->generation()) return experiment::support_of(*world_, vehicle());
   watched_generation_ = world_->generation();
   world_->physics().watch_contacts(vehicle().group());
   return std::nullopt;
@@ -119,7 +119,7 @@ MotionStage::Saved MotionStage::save() {
   Saved saved{world_->state().snapshot(), {}};
   if (!scoring_) return saved;
   auto archive = sim::StateArchive::saver();
-  scoring_->visit_state(archive, History::length);
+  scoring_->visit_state(archive, experiment::History::length);
   archive.end();
   saved.scores = archive.take_bytes();
   return saved;
@@ -131,7 +131,7 @@ void MotionStage::restore(const Saved& saved) {
   if (after_restore) after_restore(player());
   if (!scoring_) return;
   auto archive = sim::StateArchive::restorer(saved.scores);
-  scoring_->visit_state(archive, History::length);
+  scoring_->visit_state(archive, experiment::History::length);
   archive.end();
 }
 
@@ -274,4 +274,4 @@ bool MotionStage::play_out(double settle_s, double max_s) {
   return player().phase() == devices::MotionPlayer::Phase::idle;
 }
 
-}  // namespace tools
+}  // namespace motion

@@ -19,7 +19,7 @@
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Where a motion is played.
 struct StageOptions {
@@ -91,9 +91,9 @@ class MotionStage {
   std::uint64_t state_hash() const;
   /// Returns how the vehicle stands in the last step.  None: fewer than three contacts carry it, or they are known from
   /// the next step on, as in the first call and after a snapshot was restored.
-  std::optional<Support> support();
+  std::optional<experiment::Support> support();
   /// Metrics of the world, which go back with it; null without StageOptions::scores.
-  const Scoring* scoring() const { return scoring_.get(); }
+  const experiment::Scoring* scoring() const { return scoring_.get(); }
   const std::vector<Branch>& branches() const { return branches_; }
   sim::World& world() { return *world_; }
   /// Returns the world at its start, as a complete world file.
@@ -137,7 +137,7 @@ class MotionStage {
   sim::LoadedWorld loaded_;
   sim::InProcessBus bus_;
   std::unique_ptr<sim::World> world_;
-  std::unique_ptr<Scoring> scoring_;
+  std::unique_ptr<experiment::Scoring> scoring_;
   std::string vehicle_, player_;
   std::optional<std::uint64_t> watched_generation_;  ///< of the world, in which the contacts of the vehicle are watched
   std::optional<double> started_s_;                  ///< time of the run at the start of the motion
@@ -155,4 +155,4 @@ double end_limit_s(const sim::JointMotion& motion);
 /// Returns the keys of a motion, as they are written in a file.
 sim::ConfigNode node_of(const sim::JointMotion& motion);
 
-}  // namespace tools
+}  // namespace motion

@@ -10,7 +10,7 @@
 #include "devices/joint/joint_servo.hpp"
 #include "sim/vehicle/mounted_device.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -87,4 +87,4 @@ std::string MotionTracking::text(const sim::JointMotion& motion) const {
                             has_fallen() ? ": the vehicle has fallen" : "");
 }
 
-}  // namespace tools
+}  // namespace motion

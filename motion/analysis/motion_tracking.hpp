@@ -7,7 +7,7 @@
 
 #include "motion/analysis/motion_stage.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Tilt beyond which a vehicle has fallen.
 constexpr double fallen_rad = std::numbers::pi / 4;
@@ -42,4 +42,4 @@ class MotionTracking {
   double tilt_rad_ = 0;
 };
 
-}  // namespace tools
+}  // namespace motion

@@ -9,7 +9,7 @@
 #include "devices/motion/motion_player.hpp"
 #include "sim/random/random.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -183,4 +183,4 @@ void set_played_motion(sim::WorldConfig& world, const std::string& vehicle, cons
   instance.config = std::make_shared<const sim::VehicleConfig>(std::move(changed));
 }
 
-}  // namespace tools
+}  // namespace motion

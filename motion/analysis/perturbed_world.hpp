@@ -9,7 +9,7 @@
 #include "sim/motion/motion.hpp"
 #include "sim/world_file/world_config.hpp"
 
-namespace tools {
+namespace motion {
 
 /// How a world differs from its file.
 struct Perturbation {
@@ -53,4 +53,4 @@ sim::WorldConfig perturbed(sim::WorldConfig world, const std::string& vehicle, c
 /// Makes the vehicle play a motion from the start of the run, without end.
 void set_played_motion(sim::WorldConfig& world, const std::string& vehicle, const sim::JointMotion& motion);
 
-}  // namespace tools
+}  // namespace motion

@@ -11,7 +11,7 @@
 #include "sim/base/thread_pool.hpp"
 #include "sim/world/world_state.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -291,4 +291,4 @@ WeakestPush weakest_push(MotionStage& stage, const std::vector<double>& instants
   return weakest;
 }
 
-}  // namespace tools
+}  // namespace motion

@@ -5,7 +5,7 @@
 
 #include "motion/analysis/motion_stage.hpp"
 
-namespace tools {
+namespace motion {
 
 /// How a vehicle is pushed.
 struct PushOptions {
@@ -74,4 +74,4 @@ struct WeakestPush {
 /// make it fall.
 WeakestPush weakest_push(MotionStage& stage, const std::vector<double>& instants_s, const PushOptions& options);
 
-}  // namespace tools
+}  // namespace motion

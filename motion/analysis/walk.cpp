@@ -17,7 +17,7 @@
 #include "sim/world/world.hpp"
 #include "sim/world/world_state.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -139,4 +139,4 @@ Walk measured_walk(sim::WorldConfig config, const std::string& vehicle_name, con
   return walk;
 }
 
-}  // namespace tools
+}  // namespace motion

@@ -7,7 +7,7 @@
 #include "sim/motion/motion.hpp"
 #include "sim/world_file/world_config.hpp"
 
-namespace tools {
+namespace motion {
 
 /// How a walk is measured.
 struct WalkOptions {
@@ -33,4 +33,4 @@ struct Walk {
 Walk measured_walk(sim::WorldConfig world, const std::string& vehicle, const sim::JointMotion& motion,
                    const WalkOptions& options);
 
-}  // namespace tools
+}  // namespace motion

@@ -3,7 +3,7 @@
 #include "motion/formats/pose_table.hpp"
 #include "sim/motion/motion_frames.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -43,4 +43,4 @@ MotionFormat csv_format() {
           .read = read_csv};
 }
 
-}  // namespace tools
+}  // namespace motion

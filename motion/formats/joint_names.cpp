@@ -7,7 +7,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/motion/motion.hpp"
 
-namespace tools {
+namespace motion {
 
 void JointNameList::read(sim::ParamReader& in) {
   in.require("list");
@@ -104,4 +104,4 @@ std::vector<std::string> JointNames::foreign_names(const std::string& list) cons
   return all;
 }
 
-}  // namespace tools
+}  // namespace motion

@@ -8,7 +8,7 @@
 
 #include "sim/config/param_reader.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Names of joints in the files of one or more formats.
 struct JointNameList {
@@ -64,4 +64,4 @@ class JointNames {
   std::vector<JointNameList> lists_;
 };
 
-}  // namespace tools
+}  // namespace motion

@@ -7,7 +7,7 @@
 #include "motion/formats/pose_table.hpp"
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace motion {
 
 const std::vector<MotionFormat>& motion_formats() {
   static const std::vector<MotionFormat> formats{
@@ -77,4 +77,4 @@ void refuse_motion(const sim::JointMotion& motion, const std::string& text) {
   throw sim::ConfigError({"motion '" + motion.name + "': " + text});
 }
 
-}  // namespace tools
+}  // namespace motion

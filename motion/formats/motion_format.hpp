@@ -10,7 +10,7 @@
 #include "motion/formats/joint_names.hpp"
 #include "sim/motion/motion.hpp"
 
-namespace tools {
+namespace motion {
 
 /// What a file does not keep of a motion, or a motion of a file: one sentence each.
 using Losses = std::vector<std::string>;
@@ -95,4 +95,4 @@ MotionFormat opencat_format();
 MotionFormat open_r_table_format();
 MotionFormat open_r_object_format();
 
-}  // namespace tools
+}  // namespace motion

@@ -6,7 +6,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/motion/joint_name.hpp"
 
-namespace tools {
+namespace motion {
 
 void check_joint_name(std::string_view name, const sim::SourcePlace& place, const std::string& who) {
   if (const std::string error = sim::joint_name_error(name); !error.empty()) sim::throw_config_error(place, who, error);
@@ -49,4 +49,4 @@ void list_losses(const sim::JointMotion& motion, const Keeps& keeps, Losses& los
     losses.push_back("'start' is not kept: the player chooses the way to the first pose");
 }
 
-}  // namespace tools
+}  // namespace motion

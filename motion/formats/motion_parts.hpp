@@ -6,7 +6,7 @@
 
 #include "motion/formats/motion_format.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Throws sim::ConfigError at the place when a motion file cannot hold the name of a joint.  `who`: the part of the
 /// file.
@@ -26,4 +26,4 @@ struct Keeps {
 };
 void list_losses(const sim::JointMotion& motion, const Keeps& keeps, Losses& losses);
 
-}  // namespace tools
+}  // namespace motion

@@ -4,7 +4,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/motion/motion.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -205,4 +205,4 @@ std::string mtn_bytes(const MtnFile& file) {
   return std::move(out.bytes_);
 }
 
-}  // namespace tools
+}  // namespace motion

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tools {
+namespace motion {
 
 /// Key of an MTN file; angles in 1e-6 rad.
 struct MtnKey {
@@ -30,4 +30,4 @@ MtnFile parse_mtn(std::string_view bytes, const std::string& file);
 /// number.
 std::string mtn_bytes(const MtnFile& file);
 
-}  // namespace tools
+}  // namespace motion

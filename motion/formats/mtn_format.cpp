@@ -13,7 +13,7 @@
 // first of which is the key itself; the step between two is the difference divided by 2n + 2 as integers, and the last
 // key of the file is never sent.
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -126,4 +126,4 @@ MotionFormat mtn_format() {
           .read = read_mtn};
 }
 
-}  // namespace tools
+}  // namespace motion

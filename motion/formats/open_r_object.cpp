@@ -8,7 +8,7 @@
 #include "motion/formats/open_r_table.hpp"
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -306,4 +306,4 @@ MotionFormat open_r_object_format() {
           .write_folder = write_open_r_object};
 }
 
-}  // namespace tools
+}  // namespace motion

@@ -7,7 +7,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/motion/motion_frames.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -81,4 +81,4 @@ MotionFormat open_r_table_format() {
           .read = nullptr};
 }
 
-}  // namespace tools
+}  // namespace motion

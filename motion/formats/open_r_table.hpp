@@ -6,7 +6,7 @@
 
 #include "motion/formats/pose_table.hpp"
 
-namespace tools {
+namespace motion {
 
 /// A motion as a C table of frames of 8 ms, in packages of four.
 struct OpenRTable {
@@ -20,4 +20,4 @@ struct OpenRTable {
 OpenRTable open_r_table(const sim::JointMotion& motion, const JointNames& names, const FormatOptions& options,
                         Losses& losses);
 
-}  // namespace tools
+}  // namespace motion

@@ -9,7 +9,7 @@
 #include "motion/formats/skill_array.hpp"
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -143,4 +143,4 @@ MotionFormat opencat_format() {
           .read = read_opencat};
 }
 
-}  // namespace tools
+}  // namespace motion

@@ -6,7 +6,7 @@
 
 #include "motion/formats/motion_format.hpp"
 
-namespace tools {
+namespace motion {
 
 // A gait is repeated, one row after the other.  Between two rows of a behavior all joints move on a cosine, in as many
 // steps as the joint with the longest way needs at the speed of the row; how long a step takes is not in the file.
@@ -18,4 +18,4 @@ std::string write_opencat(const sim::JointMotion& motion, const JointNames& name
                           Losses& losses);
 sim::JointMotion read_opencat(const MotionSource& source, Losses& losses);
 
-}  // namespace tools
+}  // namespace motion

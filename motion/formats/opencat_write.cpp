@@ -9,7 +9,7 @@
 #include "motion/formats/skill_array.hpp"
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -212,4 +212,4 @@ std::string write_opencat(const sim::JointMotion& motion, const JointNames& name
   return SkillWriter(motion, names, options, losses).write();
 }
 
-}  // namespace tools
+}  // namespace motion

@@ -9,7 +9,7 @@
 // The time of the first pose is the least time of the approach to it; if the approach takes longer, all later times
 // move with it.  So the first pose is at the time `start: min_s` of the motion.
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -155,4 +155,4 @@ MotionFormat play_motion2_format() {
           .read = read_play_motion2};
 }
 
-}  // namespace tools
+}  // namespace motion

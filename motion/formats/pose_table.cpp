@@ -10,7 +10,7 @@
 
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -264,4 +264,4 @@ PoseTable pose_table(const sim::JointMotion& motion, const JointNames& names, co
   return TableBuilder(motion, names, format, rules, losses).build();
 }
 
-}  // namespace tools
+}  // namespace motion

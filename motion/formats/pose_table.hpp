@@ -7,7 +7,7 @@
 #include "motion/formats/motion_format.hpp"
 #include "motion/formats/motion_parts.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Joint of a table of poses.
 struct TableJoint {
@@ -44,4 +44,4 @@ struct TableRules {
 PoseTable pose_table(const sim::JointMotion& motion, const JointNames& names, const MotionFormat& format,
                      const TableRules& rules, Losses& losses);
 
-}  // namespace tools
+}  // namespace motion

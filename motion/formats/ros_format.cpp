@@ -11,7 +11,7 @@
 // joint_trajectory_controller goes in straight lines between points with positions only, as written here; between two
 // with velocities the path is cubic, between two with velocities and accelerations quintic.
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -207,4 +207,4 @@ MotionFormat ros_format() {
           .read = read_ros};
 }
 
-}  // namespace tools
+}  // namespace motion

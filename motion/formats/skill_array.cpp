@@ -9,7 +9,7 @@
 #include "experiment/files/line_reader.hpp"
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -19,7 +19,7 @@ constexpr int behavior_columns = skill_joints + 4;
 
 struct Number {
   int value = 0;
-  Word word;
+  experiment::Word word;
   int line = 1;
 };
 
@@ -74,7 +74,7 @@ class ArrayReader {
   }
 
   std::size_t begin_list(std::size_t i) {
-    const Word word{"{", static_cast<int>(i) + 1};
+    const experiment::Word word{"{", static_cast<int>(i) + 1};
     if (is_inside_) lines_.fail(word, "must be a number");
     if (type_ == Type::other) return is_other_list_ = true, i + 1;
     is_inside_ = true;
@@ -93,7 +93,7 @@ class ArrayReader {
   std::size_t read_name(std::string_view line, std::size_t i) {
     std::size_t end = i;
     while (end < line.size() && (std::isalnum(static_cast<unsigned char>(line[end])) || line[end] == '_')) ++end;
-    const Word word{line.substr(i, end - i), static_cast<int>(i) + 1};
+    const experiment::Word word{line.substr(i, end - i), static_cast<int>(i) + 1};
     if (takes_numbers()) lines_.fail(word, "must be a number");
     if (end < line.size() && line[end] == '[') name_ = word.text;
     // Lists of names and of pointers may stand beside the skills.
@@ -112,7 +112,7 @@ class ArrayReader {
     while (end < line.size() && line[end] != ',' && line[end] != '}' && line[end] != ']' && line[end] != '/' &&
            !std::isspace(static_cast<unsigned char>(line[end])))
       ++end;
-    const Word word{line.substr(i, std::max(end - i, std::size_t{1})), static_cast<int>(i) + 1};
+    const experiment::Word word{line.substr(i, std::max(end - i, std::size_t{1})), static_cast<int>(i) + 1};
     const auto value = static_cast<int>(lines_.whole_of(word, -128, 127, "a number of a skill"));
     std::vector<Number>& numbers = lists_.back().numbers;
     if (numbers.size() == max_numbers) lines_.fail(word, "a skill must have at most 128 rows");
@@ -120,7 +120,7 @@ class ArrayReader {
     return end;
   }
 
-  LineReader lines_;
+  experiment::LineReader lines_;
   bool has_braces_;
   bool is_inside_ = false, is_remark_ = false;
   bool is_other_list_ = false;                                      ///< in braces of something else than a skill
@@ -253,4 +253,4 @@ std::string skill_text(const SkillArray& skill) {
   return text + "};\n";
 }
 
-}  // namespace tools
+}  // namespace motion

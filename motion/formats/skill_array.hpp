@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tools {
+namespace motion {
 
 constexpr int skill_joints = 16;
 
@@ -35,4 +35,4 @@ SkillArray parse_skill(std::string_view text, const std::string& file, const std
 /// Returns the C array of a skill whose angles are within 254 degrees.  Angles are even when one is above 127.
 std::string skill_text(const SkillArray& skill);
 
-}  // namespace tools
+}  // namespace motion

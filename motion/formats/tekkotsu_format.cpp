@@ -11,7 +11,7 @@
 // Each output has its own keys, linear between them.  At the start the keys at 0 take the values that the robot has
 // then: so the way to the first keys after 0 is the approach, and what Shoal calls time 0 is their time.
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -158,4 +158,4 @@ MotionFormat pos_format() {
           .read = read_pos};
 }
 
-}  // namespace tools
+}  // namespace motion

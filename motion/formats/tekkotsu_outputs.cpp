@@ -8,7 +8,7 @@
 #include "motion/formats/motion_parts.hpp"
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -17,7 +17,7 @@ constexpr int max_depth = 4;
 constexpr std::int64_t first_ms = 1;  // of Tekkotsu while it reads keys
 constexpr double rad_of_degree = std::numbers::pi / 180;
 
-bool is_word(const Word& word, std::initializer_list<std::string_view> names) {
+bool is_word(const experiment::Word& word, std::initializer_list<std::string_view> names) {
   std::string lower;
   for (const char c : word.text) lower += c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
   return std::find(names.begin(), names.end(), lower) != names.end();
@@ -43,23 +43,23 @@ class TekkotsuReader {
     time_ms_ = is_posture_ ? 0 : first_ms;
     while (lines_.next()) {
       if (lines_.line().starts_with("#END")) return is_posture_ ? 0 : end_ms_;
-      const std::vector<Word> words = words_of_line();
+      const std::vector<experiment::Word> words = words_of_line();
       if (!words.empty()) read_line(words);
     }
     lines_.fail(1, "must end with the line '#END'");
   }
 
  private:
-  std::vector<Word> words_of_line() const {
-    std::vector<Word> words = lines_.split_at_spaces();
-    const auto remark =
-        std::find_if(words.begin(), words.end(), [](const Word& word) { return word.text.starts_with('#'); });
+  std::vector<experiment::Word> words_of_line() const {
+    std::vector<experiment::Word> words = lines_.split_at_spaces();
+    const auto remark = std::find_if(words.begin(), words.end(),
+                                     [](const experiment::Word& word) { return word.text.starts_with('#'); });
     words.erase(remark, words.end());
-    if (is_posture_) std::erase_if(words, [](const Word& word) { return word.text == "="; });
+    if (is_posture_) std::erase_if(words, [](const experiment::Word& word) { return word.text == "="; });
     return words;
   }
 
-  void read_line(const std::vector<Word>& words) {
+  void read_line(const std::vector<experiment::Word>& words) {
     for (std::size_t i = 0; i < words.size(); ++i)
       if (words[i].text.size() > (i == 0 ? max_tekkotsu_name : max_tekkotsu_word))
         lines_.fail(words[i], "a word must have at most " +
@@ -69,7 +69,7 @@ class TekkotsuReader {
   }
 
   /// Parts of a posture that are not outputs.
-  bool read_section(const std::vector<Word>& words) {
+  bool read_section(const std::vector<experiment::Word>& words) {
     const std::string_view first = words[0].text;
     if (first.starts_with('<') && first.ends_with('>')) {
       const bool ends = first.starts_with("</");
@@ -81,8 +81,8 @@ class TekkotsuReader {
     return is_other_section_ || first == "verbose";
   }
 
-  bool read_command(const std::vector<Word>& words) {
-    const Word& first = words[0];
+  bool read_command(const std::vector<experiment::Word>& words) {
+    const experiment::Word& first = words[0];
     if (is_word(first, {"radians"})) return unit_ = 1, true;
     if (is_word(first, {"degrees"})) return unit_ = rad_of_degree, true;
     if (is_word(first, {"advancetime", "delay"}))
@@ -93,12 +93,12 @@ class TekkotsuReader {
     return true;
   }
 
-  std::int64_t time_of(const std::vector<Word>& words, std::int64_t max) const {
+  std::int64_t time_of(const std::vector<experiment::Word>& words, std::int64_t max) const {
     if (words.size() != 2) lines_.fail(words[0].column, "must have a command and a time in ms");
     return lines_.whole_of(words[1], 0, std::max<std::int64_t>(max, 0), "the time in ms");
   }
 
-  void read_other_file(const std::vector<Word>& words) {
+  void read_other_file(const std::vector<experiment::Word>& words) {
     if (words.size() != 2) lines_.fail(words[0].column, "must have a command and a file");
     const std::string name(words[1].text);
     if (!source_.read_other) lines_.fail(words[1], "other files cannot be loaded here");
@@ -109,15 +109,16 @@ class TekkotsuReader {
     try {
       bytes = source_.read_other(name);
     } catch (const std::runtime_error& error) {
-      lines_.fail(words[1].column, "file " + text_in_quotes(name) + " " + error.what());
+      lines_.fail(words[1].column, "file " + experiment::text_in_quotes(name) + " " + error.what());
     }
     const MotionSource other{bytes, name, source_.names, source_.options, source_.read_other};
     time_ms_ += read_tekkotsu(other, start_ms_ + time_ms_, depth_ + 1, outputs_, keys_, losses_);
     end_ms_ = std::max(end_ms_, time_ms_);
   }
 
-  void read_value(const std::vector<Word>& words) {
-    if (words.size() < 2) lines_.fail(words[0].column, "needs a value after the name " + text_in_quotes(words[0].text));
+  void read_value(const std::vector<experiment::Word>& words) {
+    if (words.size() < 2)
+      lines_.fail(words[0].column, "needs a value after the name " + experiment::text_in_quotes(words[0].text));
     if (words.size() > 3) lines_.fail(words[3], "must end after name, value and weight");
     TekkotsuValue value;
     value.value = lines_.number_of(words[1], -1e6, 1e6, "the value") * unit_;
@@ -135,7 +136,7 @@ class TekkotsuReader {
   }
 
   const MotionSource& source_;
-  LineReader lines_;
+  experiment::LineReader lines_;
   std::int64_t start_ms_;                  ///< of this file in the first one
   std::int64_t time_ms_ = 0, end_ms_ = 0;  ///< from its start
   int depth_;
@@ -165,7 +166,7 @@ std::vector<std::string> TekkotsuOutputs::matches(const std::string& name) const
   return found;
 }
 
-std::vector<std::string> TekkotsuOutputs::joints_of(const LineReader& lines, const Word& word) {
+std::vector<std::string> TekkotsuOutputs::joints_of(const experiment::LineReader& lines, const experiment::Word& word) {
   std::string name(word.text);
   while (name.ends_with('~')) name.pop_back();
   if (name.empty()) lines.fail(word, "must be the name of an output");
@@ -199,4 +200,4 @@ std::int64_t read_tekkotsu(const MotionSource& source, std::int64_t start_ms, in
   return TekkotsuReader(source, start_ms, depth, outputs, keys, losses).read();
 }
 
-}  // namespace tools
+}  // namespace motion

@@ -9,7 +9,7 @@
 #include "experiment/files/line_reader.hpp"
 #include "motion/formats/motion_format.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Value of an output of Tekkotsu, and its weight among other motions: 0 none.
 struct TekkotsuValue {
@@ -32,7 +32,7 @@ class TekkotsuOutputs {
   TekkotsuOutputs(const MotionSource& source, Losses& losses) : source_(source), losses_(losses) {}
 
   /// Returns the joints of the vehicle that a word names.
-  std::vector<std::string> joints_of(const LineReader& lines, const Word& word);
+  std::vector<std::string> joints_of(const experiment::LineReader& lines, const experiment::Word& word);
   /// Adds the losses.
   void list_unknown();
 
@@ -52,4 +52,4 @@ std::int64_t read_tekkotsu(const MotionSource& source, std::int64_t start_ms, in
 constexpr std::size_t max_tekkotsu_word = 31;  ///< values and times
 constexpr std::size_t max_tekkotsu_name = 63;
 
-}  // namespace tools
+}  // namespace motion

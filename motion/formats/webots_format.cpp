@@ -14,7 +14,7 @@
 // The player commands at each control step of h the poses at `elapsed`, linear between two lines, then adds h.  A loop
 // goes back to 0 in the step after its end, so that it lasts h longer than the file.
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -116,7 +116,7 @@ class WebotsReader {
   void read_head() {
     if (!lines_.next()) lines_.fail(1, "must start with '#WEBOTS_MOTION,V1.0'");
     check_length();
-    const std::vector<Word> words = lines_.split_at_commas();
+    const std::vector<experiment::Word> words = lines_.split_at_commas();
     if (words[0].text != "#WEBOTS_MOTION") lines_.fail(words[0], "must start with '#WEBOTS_MOTION'");
     if (words.size() < 2) lines_.fail(1, "needs the version 'V1.0'");
     if (words[1].text != "V1.0") lines_.fail(words[1], "the version must be 'V1.0'");
@@ -133,7 +133,7 @@ class WebotsReader {
 
   bool next_pose() { return lines_.next() && !lines_.line().empty(); }
 
-  double time_of(const Word& word) const {
+  double time_of(const experiment::Word& word) const {
     std::size_t begin = 0;
     std::vector<std::int64_t> parts;
     for (;;) {
@@ -156,7 +156,7 @@ class WebotsReader {
 
   void read_pose() {
     check_length();
-    const std::vector<Word> words = lines_.split_at_commas();
+    const std::vector<experiment::Word> words = lines_.split_at_commas();
     const double time_s = time_of(words[0]);
     if (!times_s_.empty() && time_s <= times_s_.back()) lines_.fail(words[0], "times must increase");
     if (words.size() < 2 || words[1].text.empty())
@@ -217,7 +217,7 @@ class WebotsReader {
 
   const MotionSource& source_;
   Losses& losses_;
-  LineReader lines_;
+  experiment::LineReader lines_;
   std::vector<std::string> joints_;
   std::vector<double> times_s_;
   std::vector<std::string> names_;
@@ -242,4 +242,4 @@ MotionFormat webots_format() {
           .read = read_webots};
 }
 
-}  // namespace tools
+}  // namespace motion

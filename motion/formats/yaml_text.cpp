@@ -10,7 +10,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/config/yaml_writer.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -73,4 +73,4 @@ std::vector<std::string> joints_called(const MotionSource& source, const char* l
   return joints;
 }
 
-}  // namespace tools
+}  // namespace motion

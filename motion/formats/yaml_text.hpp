@@ -7,7 +7,7 @@
 #include "motion/formats/motion_format.hpp"
 #include "sim/config/config_node.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Returns text in double quotes, unless it is a plain word.
 std::string yaml_word(const std::string& text);
@@ -21,4 +21,4 @@ sim::ConfigNode parse_yaml_document(const MotionSource& source, sim::Diagnostics
 std::vector<std::string> joints_called(const MotionSource& source, const char* list,
                                        const std::vector<std::string>& foreign, const sim::SourcePlace& place);
 
-}  // namespace tools
+}  // namespace motion

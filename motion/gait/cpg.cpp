@@ -7,7 +7,7 @@
 
 #include "motion/gait/leg_motion.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -43,4 +43,4 @@ sim::JointMotion Cpg::motion(std::span<const double> values) const {
   });
 }
 
-}  // namespace tools
+}  // namespace motion

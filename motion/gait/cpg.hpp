@@ -4,7 +4,7 @@
 #include "motion/gait/gait_family.hpp"
 #include "motion/gait/leg.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Trot by coupled oscillators, as of a central pattern generator (Ijspeert 2008, Neural Networks 21), in their steady
 /// state, with 8 numbers.  The phases of diagonal legs are equal, those of the two pairs half a period apart.  Each
@@ -36,4 +36,4 @@ class Cpg final : public GaitFamily {
   double frame_s_;
 };
 
-}  // namespace tools
+}  // namespace motion

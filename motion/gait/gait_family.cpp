@@ -7,7 +7,7 @@
 #include "motion/gait/half_ellipse.hpp"
 #include "motion/gait/skelliptical.hpp"
 
-namespace tools {
+namespace motion {
 
 const std::vector<std::string>& gait_names() {
   static const std::vector<std::string> names{"half_ellipse", "skelliptical", "cpg"};
@@ -21,4 +21,4 @@ std::unique_ptr<GaitFamily> make_gait(const std::string& name, const sim::Vehicl
   throw std::out_of_range("unknown gait '" + name + "'");
 }
 
-}  // namespace tools
+}  // namespace motion

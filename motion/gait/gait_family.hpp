@@ -9,7 +9,7 @@
 #include "sim/motion/motion.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Number that describes a gait, with its range and where a search starts.
 struct GaitNumber {
@@ -33,4 +33,4 @@ const std::vector<std::string>& gait_names();
 /// unknown name.
 std::unique_ptr<GaitFamily> make_gait(const std::string& name, const sim::VehicleConfig& vehicle);
 
-}  // namespace tools
+}  // namespace motion

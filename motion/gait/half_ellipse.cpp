@@ -7,7 +7,7 @@
 
 #include "motion/gait/leg_motion.hpp"
 
-namespace tools {
+namespace motion {
 
 HalfEllipse::HalfEllipse(const sim::VehicleConfig& vehicle)
     : legs_(legs_of(vehicle)), vehicle_(vehicle.vehicle), frame_s_(frame_s_of(vehicle)) {
@@ -58,4 +58,4 @@ sim::JointMotion HalfEllipse::motion(std::span<const double> values) const {
   });
 }
 
-}  // namespace tools
+}  // namespace motion

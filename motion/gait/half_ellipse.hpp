@@ -4,7 +4,7 @@
 #include "motion/gait/gait_family.hpp"
 #include "motion/gait/leg.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Trot with the 12 numbers of Kohl and Stone (ICRA 2004): each foot moves on a half ellipse, straight back on the
 /// ground and in an arc through the air; diagonal legs move together, the two pairs half a period apart.
@@ -43,4 +43,4 @@ class HalfEllipse final : public GaitFamily {
   double frame_s_ = 0.008;
 };
 
-}  // namespace tools
+}  // namespace motion

@@ -8,7 +8,7 @@
 
 #include "devices/motion/joint_group.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -142,4 +142,4 @@ std::vector<Leg> legs_of(const sim::VehicleConfig& vehicle) {
   return legs;
 }
 
-}  // namespace tools
+}  // namespace motion

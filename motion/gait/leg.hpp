@@ -7,7 +7,7 @@
 #include "sim/base/math.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Range and speed of a joint of a leg, rad and rad/s.
 struct LegJointLimits {
@@ -41,4 +41,4 @@ struct Leg {
 /// the foot is the sphere `ball` of the body that the knee moves.  Throws ConfigError with all that is missing.
 std::vector<Leg> legs_of(const sim::VehicleConfig& vehicle);
 
-}  // namespace tools
+}  // namespace motion

@@ -5,7 +5,7 @@
 
 #include "devices/motion/joint_group.hpp"
 
-namespace tools {
+namespace motion {
 
 std::vector<double> with_limited_steps(const std::vector<double>& values, double step) {
   const std::size_t n = values.size();
@@ -76,4 +76,4 @@ sim::JointMotion leg_motion(const std::string& vehicle, const std::vector<Leg>& 
   return motion;
 }
 
-}  // namespace tools
+}  // namespace motion

@@ -9,7 +9,7 @@
 #include "sim/motion/motion.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 
-namespace tools {
+namespace motion {
 
 /// How the courses of the joints of a gait are limited.
 enum class CourseLimit {
@@ -34,4 +34,4 @@ double side_of(const Leg& leg);
 sim::JointMotion leg_motion(const std::string& vehicle, const std::vector<Leg>& legs, int frames, double frame_s,
                             CourseLimit limit, const std::function<LegPosture(const Leg&, int frame)>& posture_at);
 
-}  // namespace tools
+}  // namespace motion

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -173,4 +173,4 @@ sim::JointMotion Skelliptical::motion(std::span<const double> values) const {
   return motion(values, {.forward_m = values[stride]}, CourseLimit::speed);
 }
 
-}  // namespace tools
+}  // namespace motion

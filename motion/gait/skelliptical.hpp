@@ -5,7 +5,7 @@
 #include "motion/gait/leg.hpp"
 #include "motion/gait/leg_motion.hpp"
 
-namespace tools {
+namespace motion {
 
 /// What a walk does in half a period.
 struct GaitStep {
@@ -89,4 +89,4 @@ class Skelliptical final : public GaitFamily {
   double scale_;  ///< length of the front legs over that of an ERS-7
 };
 
-}  // namespace tools
+}  // namespace motion

@@ -5,7 +5,7 @@
 
 #include "motion/analysis/motion_stage.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Bytes that a world in a take may have, as YAML.
 constexpr std::size_t max_embedded_bytes = 1'000'000;
@@ -22,4 +22,4 @@ void embed_world(const std::string& take, const sim::ConfigNode& world);
 /// holds none.  Throws sim::ConfigError when that is not a world as above.
 bool use_embedded_world(StageOptions& stage, const sim::JointMotion& take, const std::string& take_path);
 
-}  // namespace tools
+}  // namespace motion

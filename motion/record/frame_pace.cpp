@@ -3,7 +3,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
-namespace tools {
+namespace motion {
 
 void FramePace::begin(Clock::time_point now) {
   constexpr std::chrono::milliseconds max_to_catch_up{100};
@@ -23,4 +23,4 @@ std::string FramePace::text() const {
   return text;
 }
 
-}  // namespace tools
+}  // namespace motion

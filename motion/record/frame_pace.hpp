@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-namespace tools {
+namespace motion {
 
 /// Times at which the frames of a recording begin by the clock, and how late they did.
 class FramePace {
@@ -35,4 +35,4 @@ class FramePace {
   std::int64_t frames_ = 0, late_ = 0;
 };
 
-}  // namespace tools
+}  // namespace motion

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -196,4 +196,4 @@ std::string JointCommands::help() const {
   return text;
 }
 
-}  // namespace tools
+}  // namespace motion

@@ -11,7 +11,7 @@
 
 #include "devices/motion/joint_controls.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Wish of the person who records, beside the velocities of joints.
 enum class RecordWish { pause, finish, back, push };
@@ -93,4 +93,4 @@ class JointCommands {
   std::vector<std::size_t> pressed_actions_;
 };
 
-}  // namespace tools
+}  // namespace motion

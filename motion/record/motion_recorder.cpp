@@ -11,7 +11,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/motion/motion_frames.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -354,4 +354,4 @@ std::uint64_t MotionRecorder::finish() {
   return stage_->state_hash();
 }
 
-}  // namespace tools
+}  // namespace motion

@@ -14,7 +14,7 @@
 #include "motion/record/set_points.hpp"
 #include "motion/record/take_journal.hpp"
 
-namespace tools {
+namespace motion {
 
 /// What is recorded, where, and over what.
 struct RecordOptions {
@@ -109,4 +109,4 @@ class MotionRecorder {
   std::size_t changes_ = 0;      ///< in the journal
 };
 
-}  // namespace tools
+}  // namespace motion

@@ -7,7 +7,7 @@
 
 #include "experiment/drive/drive_error.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -49,20 +49,20 @@ bool is_key_name(const std::string& name) {
   return name.find_first_of(" ,") == std::string::npos && words.find(" " + name + ",") != std::string::npos;
 }
 
-void take_event(const InputEvent& event, JointCommands& commands) {
+void take_event(const experiment::InputEvent& event, JointCommands& commands) {
   switch (event.type) {
-    case InputEvent::report:
+    case experiment::InputEvent::report:
       // What is held is unknown.
-      if (event.code == InputEvent::report_dropped) commands.release_all();
+      if (event.code == experiment::InputEvent::report_dropped) commands.release_all();
       break;
-    case InputEvent::button:
+    case experiment::InputEvent::button:
       if (event.value == 2) break;
       if (event.code >= first_button)
         commands.button(event.code, event.value != 0);
       else if (const std::string name = name_of(event.code); !name.empty())
         commands.key(name, event.value != 0);
       break;
-    case InputEvent::axis:
+    case experiment::InputEvent::axis:
       commands.axis(event.code, event.value);
       break;
     default:
@@ -71,20 +71,21 @@ void take_event(const InputEvent& event, JointCommands& commands) {
 }
 
 TerminalInput::TerminalInput(bool is_silent) : is_silent_(is_silent) {
-  if (!is_silent_) write_to_terminal(KeyEvents::query);
+  if (!is_silent_) write_to_terminal(experiment::KeyEvents::query);
 }
 
 TerminalInput::~TerminalInput() {
-  if (is_reporting_) write_to_terminal(KeyEvents::end_reports);
+  if (is_reporting_) write_to_terminal(experiment::KeyEvents::end_reports);
 }
 
-void TerminalInput::take(const KeyEvent& event, JointCommands& commands) {
+void TerminalInput::take(const experiment::KeyEvent& event, JointCommands& commands) {
   if (event.ctrl) {
-    if (event.action == KeyEvent::Action::press && (event.key == "c" || event.key == "d")) commands.key("enter", true);
+    if (event.action == experiment::KeyEvent::Action::press && (event.key == "c" || event.key == "d"))
+      commands.key("enter", true);
     return;
   }
-  if (is_silent_ || event.action == KeyEvent::Action::repeat) return;
-  if (is_reporting_) return commands.key(event.key, event.action == KeyEvent::Action::press);
+  if (is_silent_ || event.action == experiment::KeyEvent::Action::repeat) return;
+  if (is_reporting_) return commands.key(event.key, event.action == experiment::KeyEvent::Action::press);
   const Clock::time_point now = Clock::now();
   const bool is_repeated = event.key == last_key_ && now - last_at_ < repeat_interval;
   last_key_ = event.key;
@@ -96,7 +97,7 @@ bool TerminalInput::read(std::int64_t, JointCommands& commands) {
   while (const auto byte = terminal_.next()) {
     const auto event = keys_.next(*byte);
     if (keys_.has_reports() && !is_reporting_ && !is_silent_) {
-      write_to_terminal(KeyEvents::start_reports);
+      write_to_terminal(experiment::KeyEvents::start_reports);
       is_reporting_ = true;
     }
     if (event) take(*event, commands);
@@ -110,8 +111,8 @@ DeviceInput::DeviceInput(const std::string& path, JointCommands& commands) : pat
 }
 
 bool DeviceInput::read(std::int64_t, JointCommands& commands) {
-  if (device_.read([&](const InputEvent& event) { take_event(event, commands); })) return true;
-  throw DriveError(path_ + ": the device is gone");
+  if (device_.read([&](const experiment::InputEvent& event) { take_event(event, commands); })) return true;
+  throw experiment::DriveError(path_ + ": the device is gone");
 }
 
 bool EventFileInput::read(std::int64_t until_us, JointCommands& commands) {
@@ -120,4 +121,4 @@ bool EventFileInput::read(std::int64_t until_us, JointCommands& commands) {
   return next_ < events_.size();
 }
 
-}  // namespace tools
+}  // namespace motion

@@ -11,7 +11,7 @@
 #include "experiment/terminal/terminal_keys.hpp"
 #include "motion/record/joint_commands.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Source of keys and sticks of a recording.
 class RecordInput {
@@ -33,11 +33,11 @@ class TerminalInput final : public RecordInput {
 
  private:
   using Clock = std::chrono::steady_clock;
-  void take(const KeyEvent& event, JointCommands& commands);
+  void take(const experiment::KeyEvent& event, JointCommands& commands);
 
   bool is_silent_, is_reporting_ = false;
-  TerminalKeys terminal_;
-  KeyEvents keys_;
+  experiment::TerminalKeys terminal_;
+  experiment::KeyEvents keys_;
   std::string last_key_;  ///< a key that is held is repeated
   Clock::time_point last_at_{};
 };
@@ -52,19 +52,19 @@ class DeviceInput final : public RecordInput {
 
  private:
   std::string path_;
-  InputDevice device_;
+  experiment::InputDevice device_;
 };
 
 /// File of the events of such a device.  The first one comes at the start.
 class EventFileInput final : public RecordInput {
  public:
   /// Reads the file.  Throws DriveError.
-  explicit EventFileInput(const std::string& path) : events_(read_input_events(path)) {}
-  explicit EventFileInput(std::vector<InputEvent> events) : events_(std::move(events)) {}
+  explicit EventFileInput(const std::string& path) : events_(experiment::read_input_events(path)) {}
+  explicit EventFileInput(std::vector<experiment::InputEvent> events) : events_(std::move(events)) {}
   bool read(std::int64_t until_us, JointCommands& commands) override;
 
  private:
-  std::vector<InputEvent> events_;
+  std::vector<experiment::InputEvent> events_;
   std::size_t next_ = 0;
 };
 
@@ -75,6 +75,6 @@ bool is_key_name(const std::string& name);
 constexpr const char* key_words = "up, down, left, right, escape, space, tab, enter, backspace";
 
 /// Passes an event of an input device on.  Keys are named by their place on a US keyboard.
-void take_event(const InputEvent& event, JointCommands& commands);
+void take_event(const experiment::InputEvent& event, JointCommands& commands);
 
-}  // namespace tools
+}  // namespace motion

@@ -5,15 +5,15 @@
 
 #include "sim/world_file/vehicle_loader.hpp"
 
-namespace tools {
+namespace motion {
 
 void RecordView::serve(bool is_paused) {
   page_.control().paused = is_paused;
   page_.serve([this](const std::string& command, double, const std::string& text) {
     try {
-      return RunView::Answer{true, execute(command, text)};
+      return viewer::RunView::Answer{true, execute(command, text)};
     } catch (const std::runtime_error& error) {
-      return RunView::Answer{false, error.what()};
+      return viewer::RunView::Answer{false, error.what()};
     }
   });
 }
@@ -30,4 +30,4 @@ std::string RecordView::execute(const std::string& command, const std::string& t
   return fmt::format("recorded at {:.3f} s", recorder_.now_s());
 }
 
-}  // namespace tools
+}  // namespace motion

@@ -6,14 +6,14 @@
 #include "motion/record/motion_recorder.hpp"
 #include "motion/record/stage_view.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Live page of a recording of a motion.  Pages see the world, and change it by actions, which become a part of the
 /// recording; only keys steer it.
 class RecordView {
  public:
   /// Starts the server.  `recorder` must outlive this.  Throws bridges::WebError.
-  RecordView(const ViewOptions& options, MotionRecorder& recorder)
+  RecordView(const experiment::ViewOptions& options, MotionRecorder& recorder)
       : recorder_(recorder), page_(options, recorder.stage()) {}
 
   std::string url() const { return page_.url(); }
@@ -29,4 +29,4 @@ class RecordView {
   StageView page_;
 };
 
-}  // namespace tools
+}  // namespace motion

@@ -12,7 +12,7 @@
 #include "sim/base/whole_file.hpp"
 #include "sim/motion/motion_frames.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -272,4 +272,4 @@ SavedTake save_take(const std::string& path, const RecoveredTake& recovered, con
   return saved;
 }
 
-}  // namespace tools
+}  // namespace motion

@@ -7,7 +7,7 @@
 #include "motion/record/take.hpp"
 #include "sim/motion/motion.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Tolerance of the keys of a recording, rad or m: 0.25 degrees.
 constexpr double key_tolerance = 0.00436332312998582;
@@ -47,4 +47,4 @@ struct SavedTake {
 SavedTake save_take(const std::string& path, const RecoveredTake& recovered, const std::string& state_hash,
                     const std::string& operation);
 
-}  // namespace tools
+}  // namespace motion

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace tools {
+namespace motion {
 
 void SetPoints::move(std::size_t joint, double velocity, const std::optional<Goal>& goal) {
   const Limits& limits = limits_[joint];
@@ -78,4 +78,4 @@ void SetPoints::limit(std::span<const std::size_t> joints) {
   }
 }
 
-}  // namespace tools
+}  // namespace motion

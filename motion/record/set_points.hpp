@@ -8,7 +8,7 @@
 
 #include "devices/motion/joint_limits.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Set points of the joints of a group, which follow velocities frame by frame and keep the limits of the servos and
 /// those of pairs of joints.
@@ -64,4 +64,4 @@ class SetPoints {
   std::vector<bool> at_limit_, waits_;
 };
 
-}  // namespace tools
+}  // namespace motion

@@ -4,16 +4,16 @@
 #include "experiment/run/scores_message.hpp"
 #include "experiment/run/version.hpp"
 
-namespace tools {
+namespace motion {
 
-StageView::StageView(const ViewOptions& options, MotionStage& stage)
+StageView::StageView(const experiment::ViewOptions& options, MotionStage& stage)
     : stage_(stage),
-      page_(options, short_version()),
+      page_(options, experiment::short_version()),
       bus_(page_),
       publisher_(
           bus_, stage.world(),
           [&stage](shoal::sim_scores_t& message) {
-            if (stage.scoring() != nullptr) fill_scores(*stage.scoring(), message);
+            if (stage.scoring() != nullptr) experiment::fill_scores(*stage.scoring(), message);
           },
           [] { return true; }) {
   page_.start(stage_.world(), std::nullopt);
@@ -30,7 +30,7 @@ StageView::~StageView() {
   page_.ended(stage_.world(), control_, "quit", "");
 }
 
-void StageView::serve(const RunView::Execute& execute) {
+void StageView::serve(const viewer::RunView::Execute& execute) {
   page_.serve(stage_.world(), publisher_, control_, "", execute);
 }
 
@@ -40,4 +40,4 @@ void StageView::went_back() {
   page_.moved(stage_.world(), control_, true);
 }
 
-}  // namespace tools
+}  // namespace motion

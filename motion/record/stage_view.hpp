@@ -9,14 +9,14 @@
 #include "sim/run/run_control.hpp"
 #include "viewer/server/run_view.hpp"
 
-namespace tools {
+namespace motion {
 
 /// Live page of a world in which a motion is recorded or played, with its scores if the stage has them.
 class StageView {
  public:
   /// Starts the server, and sends the state after each step of the stage, which must outlive this.  Throws
   /// bridges::WebError.
-  StageView(const ViewOptions& options, MotionStage& stage);
+  StageView(const experiment::ViewOptions& options, MotionStage& stage);
   ~StageView();
   StageView(const StageView&) = delete;
   StageView& operator=(const StageView&) = delete;
@@ -27,7 +27,7 @@ class StageView {
   /// What the pages show of the pace.
   sim::RunControl& control() { return control_; }
   /// Serves the pages, and passes their requests on; to be called once a frame, also during a pause.
-  void serve(const RunView::Execute& execute);
+  void serve(const viewer::RunView::Execute& execute);
   /// Announces that the stage went back in time.
   void went_back();
 
@@ -35,7 +35,7 @@ class StageView {
   /// Bus of the messages for viewers only.
   class PageBus final : public sim::Bus {
    public:
-    explicit PageBus(RunView& page) : page_(page) {}
+    explicit PageBus(viewer::RunView& page) : page_(page) {}
     void publish(std::string_view channel, std::span<const std::byte> payload, sim::Time at) override {
       page_.message(channel, payload, at);
     }
@@ -45,15 +45,15 @@ class StageView {
     sim::BusCounts counts() const override { return nobody_.counts(); }
 
    private:
-    RunView& page_;
+    viewer::RunView& page_;
     sim::InProcessBus nobody_;
   };
 
   MotionStage& stage_;
   sim::RunControl control_;
-  RunView page_;
+  viewer::RunView page_;
   PageBus bus_;
   bridges::ViewPublisher publisher_;
 };
 
-}  // namespace tools
+}  // namespace motion

@@ -15,7 +15,7 @@
 #include "sim/motion/joint_name.hpp"
 #include "sim/motion/motion.hpp"
 
-namespace tools {
+namespace motion {
 
 namespace {
 
@@ -212,4 +212,4 @@ Take read_take(const std::string& path, std::optional<TakeDamage>* damage) {
   return parse_take(text, path, damage);
 }
 
-}  // namespace tools
+}  // namespace motion

@@ -9,7 +9,7 @@
 
 #include "sim/config/param_reader.hpp"
 
-namespace tools {
+namespace motion {
 
 /// What is recorded, and where.
 struct TakeSettings {
@@ -65,4 +65,4 @@ Take parse_take(std::string_view text, const std::string& file_name, std::option
 /// As parse_take, from a file.  Throws sim::ConfigError.
 Take read_take(const std::string& path, std::optional<TakeDamage>* damage = nullptr);
 
-}  // namespace tools
+}  // namespace motion

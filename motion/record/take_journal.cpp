@@ -12,7 +12,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/config/yaml_writer.hpp"
 
-namespace tools {
+namespace motion {
 
 TakeJournal::TakeJournal(std::string path, const TakeSettings& settings)
     : path_(std::move(path)), file_(open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666)) {
@@ -53,4 +53,4 @@ bool is_recording(const std::string& journal) {
   return file.number() >= 0 && flock(file.number(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
 }
 
-}  // namespace tools
+}  // namespace motion

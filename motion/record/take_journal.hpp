@@ -9,7 +9,7 @@
 #include "bridges/base/file_descriptor.hpp"
 #include "motion/record/take.hpp"
 
-namespace tools {
+namespace motion {
 
 /// File that holds a recording while it lasts, in the format of parse_take().  Each frame is handed to the system
 /// before it is played, so that it outlives the program however that ends; it may be lost when the machine loses its
@@ -36,4 +36,4 @@ class TakeJournal {
 /// Returns whether a process has the journal locked.
 bool is_recording(const std::string& journal);
 
-}  // namespace tools
+}  // namespace motion

@@ -46,7 +46,7 @@ std::string run(const RunArguments& arguments) {
   load.encode_message = shoal::encode_own_message;
   load.duration_s = arguments.duration_s;
   load.allow_plugins = arguments.launch;
-  tools::RunOptions options;
+  experiment::RunOptions options;
   options.duration_s = arguments.duration_s;
   options.speed = 0;
   options.bus = arguments.bus;
@@ -58,12 +58,12 @@ std::string run(const RunArguments& arguments) {
   options.await = arguments.wait_for;
   options.quiet = true;
   options.keys = false;
-  tools::Summary summary;
+  experiment::Summary summary;
   {
     const WithoutGil others;
     sim::LoadedWorld loaded = arguments.text ? sim::load_world_text(*arguments.text, arguments.world, load)
                                              : sim::load_world(arguments.world, load);
-    tools::read_programs(loaded, {options.launch, load.allow_paths});
+    experiment::read_programs(loaded, {options.launch, load.allow_paths});
     auto next_check = std::chrono::steady_clock::now();
     options.leave = [&next_check] {
       const auto now = std::chrono::steady_clock::now();
@@ -71,7 +71,7 @@ std::string run(const RunArguments& arguments) {
       next_check = now + std::chrono::milliseconds(20);
       return interrupted();
     };
-    summary = tools::run_world(loaded, options);
+    summary = experiment::run_world(loaded, options);
   }
   raise_interrupt();
   if (!summary.error.empty()) throw Error(summary.error);
@@ -112,9 +112,9 @@ void add_runs(py::module_& module) {
       },
       "world"_a, "text"_a, "seed"_a, "sets"_a, "duration_s"_a, "results"_a, "record"_a, "bus"_a, "lcm_url"_a,
       "wait_for"_a, "launch"_a, "overwrite"_a);
-  module.def("version", &tools::version_text, "Returns the versions of Shoal and of its libraries.");
-  module.def("short_version", &tools::short_version, "Returns the version of Shoal only.");
-  module.def("world_file", &tools::world_file, "name"_a, "Returns the path of a world file; see World.");
+  module.def("version", &experiment::version_text, "Returns the versions of Shoal and of its libraries.");
+  module.def("short_version", &experiment::short_version, "Returns the version of Shoal only.");
+  module.def("world_file", &experiment::world_file, "name"_a, "Returns the path of a world file; see World.");
   module.def("shipped_folder", &sim::shipped_folder, "Returns the folder with the shipped worlds; '': there is none.");
   module.def("program_folder", &sim::program_folder, "Returns the folder of the program shoal; '': there is none.");
 }

@@ -14,19 +14,20 @@
 int main(int argc, char** argv) {
   const int pairs = argc > 1 ? std::atoi(argv[1]) : 50;
   const int seed = argc > 2 ? std::atoi(argv[2]) : 1;
-  tools::ConnectOptions options;
+  motion::ConnectOptions options;
   options.worlds = argc > 3 ? std::atoi(argv[3]) : 0;
   const sim::WorldConfig world = sim::load_world(test_support::source_path("worlds/ers7_studio.yaml")).config;
   int counts[5] = {}, played = 0, tried = 0;
   for (int i = 0; i < pairs; ++i) {
-    const tools::StandingPoses poses = tools::standing_poses(world, "dog", 2, static_cast<std::uint64_t>(seed + i));
+    const verification::StandingPoses poses =
+        verification::standing_poses(world, "dog", 2, static_cast<std::uint64_t>(seed + i));
     tried += poses.tried;
-    tools::Connector connector(world, "dog", tools::held_pose("from", "ers7", poses.poses[0]), options);
-    const tools::Connection connection = connector.connect(poses.poses[1]);
+    motion::Connector connector(world, "dog", motion::held_pose("from", "ers7", poses.poses[0]), options);
+    const motion::Connection connection = connector.connect(poses.poses[1]);
     ++counts[static_cast<int>(connection.kind)];
     played += connection.played;
     double error = 0;
-    for (const tools::Arrival& arrival : connection.arrivals) error = std::max(error, arrival.error);
+    for (const motion::Arrival& arrival : connection.arrivals) error = std::max(error, arrival.error);
     std::printf("seed %2d: kind %d, %3d motions, %5.2f s, %.2f deg\n", seed + i, static_cast<int>(connection.kind),
                 connection.played, connection.motion.end_s(), error * 180 / std::numbers::pi);
     std::fflush(stdout);

@@ -63,7 +63,7 @@ sim::VehicleConfig with_fixed_head(sim::VehicleConfig vehicle) {
 /// The world of the studio with a model of the dog.
 sim::WorldConfig studio(std::int64_t model) {
   sim::WorldConfig world = sim::load_world(test_support::source_path("worlds/ers7_studio.yaml")).config;
-  if (model >= Model::servos) world = tools::world_for_walks(world);
+  if (model >= Model::servos) world = motion::world_for_walks(world);
   sim::VehicleConfig dog = *world.vehicles.front().config;
   if (model == Model::no_camera) std::erase_if(dog.devices, [](const auto& device) { return device.name == "camera"; });
   if (model == Model::legs) dog = with_fixed_head(dog);

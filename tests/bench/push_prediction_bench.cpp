@@ -32,7 +32,7 @@ std::vector<sim::MotionPose> shipped_poses() {
   return poses;
 }
 
-void print(const std::string& name, const tools::Detection& detection) {
+void print(const std::string& name, const verification::Detection& detection) {
   std::cout << fmt::format("{:<34} {:>7} {:>7} {:>7} {:>7} {:>8.3f} {:>10.3f}\n", name, detection.found,
                            detection.missed, detection.false_alarms, detection.right_passes, detection.recall(),
                            detection.precision());
@@ -41,27 +41,27 @@ void print(const std::string& name, const tools::Detection& detection) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  tools::PredictionOptions options;
+  verification::PredictionOptions options;
   // Standing it withstands 3.7 m/s.
   options.push.greatest_mps = 4;
   options.push.resolution_mps = 1.0 / 16;
   if (argc > 1) options.motions = std::atoi(argv[1]);
   if (argc > 2) options.seed = std::strtoull(argv[2], nullptr, 10);
   if (argc > 3) options.push.threads = std::atoi(argv[3]);
-  tools::StageOptions stage;
+  motion::StageOptions stage;
   stage.world = test_support::source_path("worlds/ers7_studio.yaml");
   const sim::VehicleConfig vehicle = sim::load_vehicle(test_support::source_path("vehicles/ers7.yaml"), {});
-  const tools::PushTrials result = tools::push_trials(stage, vehicle, shipped_poses(), options);
+  const verification::PushTrials result = verification::push_trials(stage, vehicle, shipped_poses(), options);
   std::cout << fmt::format("{} motions of seed {}, {} refused that fall by themselves; {} pushes up to {} m/s\n",
                            options.motions, options.seed, result.refused_motions, result.trials.size(),
                            options.push.greatest_mps);
   std::cout << fmt::format("{:<34} {:>7} {:>7} {:>7} {:>7} {:>8} {:>10}\n", "falls predicted by", "found", "missed",
                            "false", "passes", "recall", "precision");
-  print("push margin", tools::detection_by_margin(result.trials));
-  print("static check, best threshold", tools::detection_by_static_check(result.trials, false));
-  print("static check x push, the same", tools::detection_by_static_check(result.trials, true));
+  print("push margin", verification::detection_by_margin(result.trials));
+  print("static check, best threshold", verification::detection_by_static_check(result.trials, false));
+  print("static check x push, the same", verification::detection_by_static_check(result.trials, true));
   if (std::getenv("TRIALS") != nullptr)
-    for (const tools::PushTrial& t : result.trials)
+    for (const verification::PushTrial& t : result.trials)
       std::cout << fmt::format("{} {:.4f} {:.4f} {:.4f} {} {:.4f} {:.4f}\n", t.motion, t.push.at_s,
                                t.push.direction_rad, t.push.mps, t.fell ? 1 : 0, t.withstood_mps,
                                t.static_displacement_m);

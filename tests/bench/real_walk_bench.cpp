@@ -20,8 +20,8 @@
 
 namespace {
 
-using tools::DogParameters;
-using tools::RealWalk;
+using verification::DogParameters;
+using verification::RealWalk;
 
 /// Parameter of the fit with its range; gains, torques and speeds by their logarithm.
 struct Fitted {
@@ -38,7 +38,7 @@ constexpr Fitted fitted[] = {{"friction", 0.2, 0.6, 1.5, &DogParameters::frictio
                              {"play_rad", 0.002, 0.01, 0.05, &DogParameters::play_rad},
                              {"flap_factor", 0.2, 0.7, 1, &DogParameters::flap_factor}};
 
-const tools::WalkOptions options{.warm_up_s = 1.5, .measured_s = 4};
+const motion::WalkOptions options{.warm_up_s = 1.5, .measured_s = 4};
 
 void print(const char* what, std::span<const RealWalk> walks, std::span<const double> simulated) {
   std::printf("%10s %10s %10s %8s\n", what, "real", "model", "error");
@@ -49,27 +49,27 @@ void print(const char* what, std::span<const RealWalk> walks, std::span<const do
                 turns ? walks[i].step.turn_rad * unit : walks[i].step.forward_m * 100, walks[i].measured * unit,
                 simulated[i] * unit, 100 * (simulated[i] / walks[i].measured - 1), walks[i].is_fitted ? " fitted" : "");
   }
-  std::printf("rms of the relative error: %.1f %%\n", 100 * tools::relative_rms(walks, simulated, false));
+  std::printf("rms of the relative error: %.1f %%\n", 100 * verification::relative_rms(walks, simulated, false));
 }
 
 DogParameters fit(const sim::WorldConfig& world, DogParameters parameters, int candidates, std::uint64_t seed) {
-  std::vector<RealWalk> walks = tools::fast_forward_strides();
+  std::vector<RealWalk> walks = verification::fast_forward_strides();
   std::erase_if(walks, [](const RealWalk& walk) { return !walk.is_fitted; });
   std::vector<Fitted> free;
   for (const Fitted& one : fitted)
     if (!(parameters.*one.place)) free.push_back(one);
-  tools::Point start;
+  experiment::Point start;
   for (const Fitted& one : free) start.push_back(one.share());
-  tools::CmaEs search(start, {.population = 8, .sigma = 0.25, .seed = seed});
+  experiment::CmaEs search(start, {.population = 8, .sigma = 0.25, .seed = seed});
   double best = 1e9;
   for (int tried = 0; tried < candidates; tried += 8) {
     std::vector<double> values;
-    for (const tools::Point& point : search.propose()) {
+    for (const experiment::Point& point : search.propose()) {
       DogParameters candidate = parameters;
       for (std::size_t i = 0; i < free.size(); ++i) candidate.*free[i].place = free[i].at(point[i]);
-      const auto simulated =
-          tools::simulated_speeds(tools::with_parameters(world, "dog", candidate), "dog", walks, options, 0);
-      values.push_back(-tools::relative_rms(walks, simulated, false));
+      const auto simulated = verification::simulated_speeds(verification::with_parameters(world, "dog", candidate),
+                                                            "dog", walks, options, 0);
+      values.push_back(-verification::relative_rms(walks, simulated, false));
       if (-values.back() >= best) continue;
       best = -values.back();
       parameters = candidate;
@@ -112,10 +112,10 @@ int main(int argc, char** argv) {
   }
   const sim::WorldConfig world = sim::load_world(test_support::source_path("worlds/ers7_studio.yaml")).config;
   if (candidates > 0) parameters = fit(world, parameters, candidates, static_cast<std::uint64_t>(seed));
-  const sim::WorldConfig model = tools::with_parameters(world, "dog", parameters);
-  const auto strides = tools::fast_forward_strides();
-  print("stride cm", strides, tools::simulated_speeds(model, "dog", strides, options, 0));
+  const sim::WorldConfig model = verification::with_parameters(world, "dog", parameters);
+  const auto strides = verification::fast_forward_strides();
+  print("stride cm", strides, verification::simulated_speeds(model, "dog", strides, options, 0));
   if (!turns) return 0;
-  const auto turning = tools::fast_forward_turns();
-  print("turn deg", turning, tools::simulated_speeds(model, "dog", turning, options, 0));
+  const auto turning = verification::fast_forward_turns();
+  print("turn deg", turning, verification::simulated_speeds(model, "dog", turning, options, 0));
 }

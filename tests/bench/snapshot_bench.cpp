@@ -16,11 +16,11 @@
 namespace {
 
 /// A world of so many rovers (three bodies, two joints, six devices each) that has run for a while.
-tools::BenchRun& scene_of(int robots) {
-  static std::map<int, std::unique_ptr<tools::BenchRun>> scenes;
-  std::unique_ptr<tools::BenchRun>& scene = scenes[robots];
+verification::BenchRun& scene_of(int robots) {
+  static std::map<int, std::unique_ptr<verification::BenchRun>> scenes;
+  std::unique_ptr<verification::BenchRun>& scene = scenes[robots];
   if (!scene) {
-    scene = std::make_unique<tools::BenchRun>(tools::land_scene(), robots);
+    scene = std::make_unique<verification::BenchRun>(verification::land_scene(), robots);
     scene->run_for(2);
   }
   return *scene;
@@ -93,10 +93,10 @@ BENCHMARK(SnapshotOfBoxes)->Arg(10)->Arg(1000)->Unit(benchmark::kMicrosecond);
 /// minute back and half a second on.
 void RingOfTenMinutes(benchmark::State& state) {
   constexpr int seconds = 600;
-  tools::BenchRun scene(tools::land_scene(), static_cast<int>(state.range(0)));
+  verification::BenchRun scene(verification::land_scene(), static_cast<int>(state.range(0)));
   sim::World& world = scene.world();
   const std::int64_t per_second = std::llround(1 / sim::to_seconds(world.step_time()));
-  tools::SnapshotRing ring(seconds * per_second, std::size_t{64} << 20);
+  experiment::SnapshotRing ring(seconds * per_second, std::size_t{64} << 20);
   const auto wall_s = [] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
   };

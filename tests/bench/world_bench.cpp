@@ -19,7 +19,7 @@ namespace {
 /// One simulated second per iteration; the counter is CPU milliseconds per robot and simulated second.
 void LandSceneSecond(benchmark::State& state) {
   const int robots = static_cast<int>(state.range(0));
-  tools::BenchRun scene(tools::land_scene(), robots);
+  verification::BenchRun scene(verification::land_scene(), robots);
   scene.run_for(10);
   std::int64_t contacts = 0;
   for (auto _ : state) {
@@ -41,7 +41,7 @@ std::string many_rovers(std::int64_t vehicles, std::int64_t form) {
   if (form == one_count)
     return text + fmt::format("  - {{name: rover, file: rover_small.yaml, count: {}, placement: {{spacing_m: 2}}}}\n",
                               vehicles);
-  const std::string model = tools::rover_model_text("[0.24, 0, 0.04]");
+  const std::string model = verification::rover_model_text("[0.24, 0, 0.04]");
   for (std::int64_t i = 0; i < vehicles; ++i)
     text += fmt::format("  - name: rover{}\n    position_m: [{}, {}, 0]\n    {}\n", i, i % 100 * 2, i / 100 * 2,
                         form == inline_models ? "model:" + model : "file: rover_small.yaml");
@@ -67,7 +67,7 @@ BENCHMARK(LoadVehicles)
 
 /// A rover comes into a world of others and goes again; both from the request's text on, with a step in between.
 void SpawnAndRemove(benchmark::State& state) {
-  const sim::LoadedWorld loaded = sim::load_world_text(tools::land_scene_text(static_cast<int>(state.range(0))),
+  const sim::LoadedWorld loaded = sim::load_world_text(verification::land_scene_text(static_cast<int>(state.range(0))),
                                                        "worlds/land.yaml", {{"limits.vehicles=20000"}, {}, false, {}});
   sim::InProcessBus bus;
   sim::World world(loaded.config, bus);
@@ -96,7 +96,7 @@ void SpawnAndRemove(benchmark::State& state) {
 BENCHMARK(SpawnAndRemove)->Arg(10)->Arg(1000)->Arg(10000)->Unit(benchmark::kMicrosecond);
 
 void StateHash(benchmark::State& state) {
-  tools::BenchRun scene(tools::land_scene(), static_cast<int>(state.range(0)));
+  verification::BenchRun scene(verification::land_scene(), static_cast<int>(state.range(0)));
   scene.run_for(1);
   for (auto _ : state) benchmark::DoNotOptimize(scene.world().state().hash());
 }

@@ -29,12 +29,12 @@ using testing::StartsWith;
 
 const std::string cases_file = test_support::source_path("tests/fidelity/cases.yaml");
 
-tools::FidelityResult run(const std::string& name, const tools::FidelityOptions& options = {}) {
-  const tools::FidelityFile file = tools::read_fidelity_file(cases_file);
+verification::FidelityResult run(const std::string& name, const verification::FidelityOptions& options = {}) {
+  const verification::FidelityFile file = verification::read_fidelity_file(cases_file);
   const auto found =
       std::find_if(file.cases.begin(), file.cases.end(), [&](const auto& of) { return of.name == name; });
   if (found == file.cases.end()) throw std::runtime_error("no case " + name);
-  return tools::run_fidelity_case(*found, options);
+  return verification::run_fidelity_case(*found, options);
 }
 
 /// The bars that Shoal has set itself, by the group of the case or its name: what is in the file may be tighter, not
@@ -54,7 +54,7 @@ double bar_of_position_m(const std::string& name) {
 
 TEST(Fidelity, NoBarIsLooserThanItWasSet) {
   const double any = std::numeric_limits<double>::infinity();
-  for (const tools::FidelityCase& of : tools::read_fidelity_file(cases_file).cases) {
+  for (const verification::FidelityCase& of : verification::read_fidelity_file(cases_file).cases) {
     EXPECT_LE(of.bars.position_rms_m.value_or(any), bar_of_position_m(of.name)) << of.name;
     EXPECT_LE(of.bars.position_max_m.value_or(any), 3 * bar_of_position_m(of.name) + 3e-4) << of.name;
     EXPECT_LE(of.bars.velocity_rms_mps.value_or(any), 4e-4) << of.name;
@@ -64,10 +64,10 @@ TEST(Fidelity, NoBarIsLooserThanItWasSet) {
 }
 
 TEST(Fidelity, EveryTrajectoryKeepsItsBarsAtStepZero) {
-  const tools::FidelityFile file = tools::read_fidelity_file(cases_file);
+  const verification::FidelityFile file = verification::read_fidelity_file(cases_file);
   EXPECT_EQ(file.cases.size(), 41u);
-  for (const tools::FidelityCase& of : file.cases) {
-    const tools::FidelityResult result = tools::run_fidelity_case(of);
+  for (const verification::FidelityCase& of : file.cases) {
+    const verification::FidelityResult result = verification::run_fidelity_case(of);
     EXPECT_LE(of.step_s, 0.005);
     EXPECT_EQ(result.step_s, 0);
     EXPECT_THAT(result.missed, testing::IsEmpty()) << of.name;
@@ -75,17 +75,18 @@ TEST(Fidelity, EveryTrajectoryKeepsItsBarsAtStepZero) {
 }
 
 TEST(Fidelity, AtStepZeroTheErrorOfTheStepIsGone) {
-  const tools::FidelityResult coarse = run("bluerov2wu_ascent", {.step_s = 0.005}), zero = run("bluerov2wu_ascent");
+  const verification::FidelityResult coarse = run("bluerov2wu_ascent", {.step_s = 0.005}),
+                                     zero = run("bluerov2wu_ascent");
   EXPECT_EQ(coarse.step_s, 0.005);
   EXPECT_GT(coarse.position_rms_m, 100 * zero.position_rms_m);
   EXPECT_GT(coarse.turn_rms_degps, 100 * zero.turn_rms_degps);
 }
 
 TEST(Fidelity, ARunUntilABarIsMissedEndsThere) {
-  tools::FidelityOptions options{.overrides = {{"bodies.hull.hydrodynamics.mass_kg", "56"}}};
-  const tools::FidelityResult whole = run("otter_turn", options);
+  verification::FidelityOptions options{.overrides = {{"bodies.hull.hydrodynamics.mass_kg", "56"}}};
+  const verification::FidelityResult whole = run("otter_turn", options);
   options.until_missed = true;
-  const tools::FidelityResult part = run("otter_turn", options);
+  const verification::FidelityResult part = run("otter_turn", options);
   EXPECT_THAT(part.missed, testing::SizeIs(testing::Ge(1u)));
   EXPECT_LT(part.t.size(), whole.t.size() / 2);
   // The rows that are left out count as equal.
@@ -105,7 +106,7 @@ TEST(Fidelity, SmallErrorsThatWereOnceWithinTheBarsAreSeen) {
 }
 
 /// Root mean square of the distances between two runs of a case.
-double rms_between_m(const tools::FidelityResult& a, const tools::FidelityResult& b) {
+double rms_between_m(const verification::FidelityResult& a, const verification::FidelityResult& b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.ours.size(); ++i)
     for (std::size_t axis = 0; axis < 3; ++axis) sum += std::pow(a.ours[i][axis] - b.ours[i][axis], 2);
@@ -114,16 +115,17 @@ double rms_between_m(const tools::FidelityResult& a, const tools::FidelityResult
 
 TEST(Fidelity, TheStepIsOfSecondOrder) {
   // Richardson's estimate from our own runs, so that what the references round does not count.
-  for (const tools::FidelityCase& of : tools::read_fidelity_file(cases_file).cases) {
+  for (const verification::FidelityCase& of : verification::read_fidelity_file(cases_file).cases) {
     if (of.group.starts_with("own_")) continue;  // with waves, dead bands and tables
-    tools::FidelityOptions options;
+    verification::FidelityOptions options;
     // Without the jump of the drag coefficient of REMUS, and the corners of its table.
     if (of.group == "remus100") options.overrides["bodies.hull.hydrodynamics.cross_flow.drag_coefficient"] = "[0.8]";
     const auto with_step = [&](double step_s) {
       options.step_s = step_s;
-      return tools::run_fidelity_case(of, options);
+      return verification::run_fidelity_case(of, options);
     };
-    const tools::FidelityResult coarse = with_step(0.0025), half = with_step(0.00125), quarter = with_step(0.000625);
+    const verification::FidelityResult coarse = with_step(0.0025), half = with_step(0.00125),
+                                       quarter = with_step(0.000625);
     const double order = std::log2(rms_between_m(coarse, half) / rms_between_m(half, quarter));
     EXPECT_GT(order, 1.8) << of.name;
     if (of.name == "remus100_attitude_release") continue;  // its terms of second order nearly cancel
@@ -133,31 +135,31 @@ TEST(Fidelity, TheStepIsOfSecondOrder) {
 
 TEST(Fidelity, TwentyMillisecondsAreEnough) {
   // The references of MSS were integrated with this step by RK4; that of the zigzag jumps.
-  for (const tools::FidelityCase& of : tools::read_fidelity_file(cases_file).cases) {
+  for (const verification::FidelityCase& of : verification::read_fidelity_file(cases_file).cases) {
     if (of.group.starts_with("own_")) continue;
     const double bar_m = of.name == "remus100_zigzag" ? 0.05 : of.group == "prestero" ? 0.1 : 0.02;
-    EXPECT_LE(tools::run_fidelity_case(of, {.step_s = 0.02}).position_rms_m, bar_m) << of.name;
+    EXPECT_LE(verification::run_fidelity_case(of, {.step_s = 0.02}).position_rms_m, bar_m) << of.name;
   }
 }
 
 const std::string hull = "bodies.hull.hydrodynamics.";
 
 TEST(Fidelity, WithoutAddedMassAnOtterMissesItsBarByMeters) {
-  const tools::FidelityOptions none{.overrides = {{hull + "added_mass", "[0, 0, 0, 0, 0, 0]"}}};
+  const verification::FidelityOptions none{.overrides = {{hull + "added_mass", "[0, 0, 0, 0, 0, 0]"}}};
   // The references' own figures: 16 m rms in the turn, 53 m in the current.
   EXPECT_NEAR(run("otter_turn", none).position_rms_m, 16, 2);
   EXPECT_GT(run("otter_current", none).position_rms_m, 10);
 }
 
 TEST(Fidelity, WithoutCoriolisForcesOfAddedMassAnOtterMissesItsBarByMeters) {
-  const tools::FidelityOptions none{.overrides = {{hull + "quirks.added_mass_coriolis", "none"}}};
+  const verification::FidelityOptions none{.overrides = {{hull + "quirks.added_mass_coriolis", "none"}}};
   EXPECT_NEAR(run("otter_turn", none).position_rms_m, 16, 2);
   EXPECT_GT(run("otter_current", none).position_rms_m, 10);
 }
 
 TEST(Fidelity, WithoutAddedMassARemusMissesItsBar) {
-  const tools::FidelityOptions none{.overrides = {{hull + "added_mass", "[0, 0, 0, 0, 0, 0]"}}};
-  const tools::FidelityResult result = run("remus100_turn", none);
+  const verification::FidelityOptions none{.overrides = {{hull + "added_mass", "[0, 0, 0, 0, 0, 0]"}}};
+  const verification::FidelityResult result = run("remus100_turn", none);
   EXPECT_THAT(result.missed, testing::Not(testing::IsEmpty()));
   EXPECT_GT(result.position_rms_m, 0.3);
 }
@@ -167,7 +169,7 @@ TEST(Fidelity, WhatAReferenceDoesInItsOwnWayIsSeen) {
   EXPECT_NEAR(run("remus100_turn", {.overrides = {{hull + "cross_flow.strips", "exact"}}}).position_rms_m, 6.6, 0.2);
   EXPECT_NEAR(run("otter_turn", {.overrides = {{hull + "cross_flow.strips", "exact"}}}).position_rms_m, 0.84, 0.1);
   // Thrust by speed over ground: 10.6 m after 100 s.
-  const tools::FidelityResult inflow =
+  const verification::FidelityResult inflow =
       run("remus100_current", {.overrides = {{"devices.propeller.inflow", "water_speed"}}});
   EXPECT_NEAR(inflow.position_max_m, 10.6, 0.5);
 }
@@ -178,9 +180,10 @@ class FidelityFiles : public testing::Test {
     std::ofstream(folder_.file(name)) << text;
     return folder_.file(name);
   }
-  std::string error_of(const std::string& file, const tools::FidelityOptions& options = {}) {
+  std::string error_of(const std::string& file, const verification::FidelityOptions& options = {}) {
     try {
-      for (const tools::FidelityCase& of : tools::read_fidelity_file(file).cases) tools::run_fidelity_case(of, options);
+      for (const verification::FidelityCase& of : verification::read_fidelity_file(file).cases)
+        verification::run_fidelity_case(of, options);
     } catch (const sim::ConfigError& error) {
       return error.what();
     }
@@ -200,7 +203,8 @@ class FidelityFiles : public testing::Test {
 TEST_F(FidelityFiles, ATrajectoryOfOnesOwnIsComparedWithItsStart) {
   write("c.csv", header + "0,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n0.1,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n");
   const std::string file = cases("    bars: {position_max_m: 1e-9}\n");
-  const tools::FidelityResult result = tools::run_fidelity_case(tools::read_fidelity_file(file).cases.front());
+  const verification::FidelityResult result =
+      verification::run_fidelity_case(verification::read_fidelity_file(file).cases.front());
   EXPECT_NEAR(result.ours.front()[0], 1, 1e-12);
   EXPECT_NEAR(result.ours.front()[2], 3, 1e-12);
   EXPECT_NEAR(result.ours.front()[5], 0.5, 1e-12);
@@ -211,9 +215,9 @@ TEST_F(FidelityFiles, ATrajectoryOfOnesOwnIsComparedWithItsStart) {
 
 TEST_F(FidelityFiles, TheReportHasTheTableTheImagesAndOurStates) {
   write("c.csv", header + "0,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n0.1,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n");
-  const tools::FidelityFile file = tools::read_fidelity_file(cases("    title: Mine\n"));
-  tools::write_fidelity_report(folder_.file("report"), "A word before.\n",
-                               {tools::run_fidelity_case(file.cases.front())}, true);
+  const verification::FidelityFile file = verification::read_fidelity_file(cases("    title: Mine\n"));
+  verification::write_fidelity_report(folder_.file("report"), "A word before.\n",
+                                      {verification::run_fidelity_case(file.cases.front())}, true);
   const auto read = [&](const std::string& name) {
     std::ifstream in(folder_.file("report/" + name), std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(in), {});
@@ -296,10 +300,11 @@ TEST_F(FidelityFiles, AMessageThatADeviceDoesNotTakeIsRefusedBeforeTheRun) {
 
 TEST_F(FidelityFiles, ThereIsABottomFarBelowAndTheVehicleHasTheNameOfItsFile) {
   write("c.csv", header + row(0) + row(0.1));
-  const tools::FidelityFile file = tools::read_fidelity_file(cases(""));
-  const tools::FidelityCase& of = file.cases.front();
-  const auto loaded = sim::load_world_tree(tools::fidelity_world(of, tools::read_fidelity_reference(of.reference)),
-                                           folder_.file("cases.yaml"));
+  const verification::FidelityFile file = verification::read_fidelity_file(cases(""));
+  const verification::FidelityCase& of = file.cases.front();
+  const auto loaded =
+      sim::load_world_tree(verification::fidelity_world(of, verification::read_fidelity_reference(of.reference)),
+                           folder_.file("cases.yaml"));
   sim::InProcessBus bus;
   const sim::World world(loaded.config, bus);
   const sim::Vehicle& vehicle = *world.vehicles()[0];
@@ -310,12 +315,12 @@ TEST_F(FidelityFiles, ThereIsABottomFarBelowAndTheVehicleHasTheNameOfItsFile) {
 }
 
 TEST_F(FidelityFiles, ALineReportsHowACaseWent) {
-  tools::FidelityResult result;
+  verification::FidelityResult result;
   result.of.name = "turn";
   result.position_rms_m = 0.03125;
-  EXPECT_EQ(tools::fidelity_line(result, 2, 24), "2 of 24: turn: position rms 0.0312 m");
+  EXPECT_EQ(verification::fidelity_line(result, 2, 24), "2 of 24: turn: position rms 0.0312 m");
   result.missed = {"position_rms_m 0.03125 > 0.01"};
-  EXPECT_EQ(tools::fidelity_line(result, 2, 24), "2 of 24: turn: position rms 0.0312 m, bars missed: 1");
+  EXPECT_EQ(verification::fidelity_line(result, 2, 24), "2 of 24: turn: position rms 0.0312 m, bars missed: 1");
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ using testing::HasSubstr;
 
 const std::string file_of_cases = test_support::source_path("tests/fidelity/cases.yaml");
 
-std::string vehicle_of(const tools::FidelityCase& of) {
+std::string vehicle_of(const verification::FidelityCase& of) {
   return std::filesystem::path(of.vehicle).stem().string();
 }
 
@@ -28,13 +28,13 @@ std::string vehicle_of(const tools::FidelityCase& of) {
 class MutationsOf : public testing::TestWithParam<const char*> {};
 
 TEST_P(MutationsOf, EachChangeByFivePercentIsSeenByACaseOrIsListedAsWithoutEffect) {
-  tools::FidelityFile file = tools::read_fidelity_file(file_of_cases);
+  verification::FidelityFile file = verification::read_fidelity_file(file_of_cases);
   std::erase_if(file.cases, [](const auto& of) { return vehicle_of(of) != GetParam(); });
   std::ifstream in(test_support::source_path("docs/models/fidelity_coefficients.md"));
   const std::string page(std::istreambuf_iterator<char>(in), {});
-  const auto mutations = tools::mutate_fidelity(file, 0.05, [](const std::string&) {});
+  const auto mutations = verification::mutate_fidelity(file, 0.05, [](const std::string&) {});
   EXPECT_GT(mutations.size(), 20u);
-  for (const tools::FidelityMutation& mutation : mutations) {
+  for (const verification::FidelityMutation& mutation : mutations) {
     EXPECT_EQ(mutation.unseen(), !mutation.without_effect.empty()) << mutation.of.name;
     // The page is made by `shoal fidelity tests/fidelity/cases.yaml --mutate 0.05 --results docs/models`.
     EXPECT_THAT(page, HasSubstr("\n| " + mutation.of.name + " | " + sim::number_text(mutation.of.value) + " | "));
@@ -47,15 +47,16 @@ INSTANTIATE_TEST_SUITE_P(Fidelity, MutationsOf, testing::ValuesIn(vehicles),
                          [](const auto& which) { return std::string(which.param); });
 
 /// Name and value of each coefficient of a vehicle file.
-std::set<std::pair<std::string, double>> coefficients_in(tools::FidelityCase of, const std::string& vehicle) {
+std::set<std::pair<std::string, double>> coefficients_in(verification::FidelityCase of, const std::string& vehicle) {
   of.vehicle = test_support::source_path("vehicles/" + vehicle + ".yaml");
   std::set<std::pair<std::string, double>> found;
-  for (const tools::FidelityCoefficient& one : tools::fidelity_coefficients(of)) found.emplace(one.name, one.value);
+  for (const verification::FidelityCoefficient& one : verification::fidelity_coefficients(of))
+    found.emplace(one.name, one.value);
   return found;
 }
 
 TEST(Mutations, EveryShippedVehicleWithCoefficientsHasCasesOrTheCoefficientsOfOneThatHas) {
-  const tools::FidelityCase any = tools::read_fidelity_file(file_of_cases).cases.front();
+  const verification::FidelityCase any = verification::read_fidelity_file(file_of_cases).cases.front();
   std::map<std::string, std::set<std::pair<std::string, double>>> known;
   for (const char* vehicle : vehicles) known[vehicle] = coefficients_in(any, vehicle);
   int others = 0;
@@ -78,8 +79,8 @@ TEST(Mutations, EveryShippedVehicleWithCoefficientsHasCasesOrTheCoefficientsOfOn
 class MutationFiles : public testing::Test {
  protected:
   void write(const std::string& name, const std::string& text) { std::ofstream(folder_.file(name)) << text; }
-  tools::FidelityFile read(const std::string& water, const std::string& more_of_case = "",
-                           const std::string& top = "") {
+  verification::FidelityFile read(const std::string& water, const std::string& more_of_case = "",
+                                  const std::string& top = "") {
     write("v.yaml", "shoal: 1\nvehicle: v\nbodies:\n  - name: b\n    parts: [{shape: box, size_m: [1, 1, 1]}]\n" +
                         ("    hydrodynamics: {frame: frd, mass_kg: 10, inertia_kgm2: [2, 3, 4], " + water + "}\n"));
     // Half of m g down on m and an added mass of m: 2.45 m/s^2.
@@ -88,13 +89,14 @@ class MutationFiles : public testing::Test {
     write("cases.yaml", "shoal: 1\n" + top + "groups:\n  - name: g\n    vehicle: v.yaml\n" +
                             "    world: {physics.gravity_mps2: 9.80665}\n    bars: {position_max_m: 0.001}\n" +
                             "    cases: [{name: c, reference: c.csv" + more_of_case + "}]\n");
-    return tools::read_fidelity_file(folder_.file("cases.yaml"));
+    return verification::read_fidelity_file(folder_.file("cases.yaml"));
   }
-  static std::vector<tools::FidelityMutation> mutate(const tools::FidelityFile& file) {
-    return tools::mutate_fidelity(file, 0.05, [](const std::string&) {});
+  static std::vector<verification::FidelityMutation> mutate(const verification::FidelityFile& file) {
+    return verification::mutate_fidelity(file, 0.05, [](const std::string&) {});
   }
-  static const tools::FidelityMutation& named(const std::vector<tools::FidelityMutation>& all, const std::string& end) {
-    for (const tools::FidelityMutation& one : all)
+  static const verification::FidelityMutation& named(const std::vector<verification::FidelityMutation>& all,
+                                                     const std::string& end) {
+    for (const verification::FidelityMutation& one : all)
       if (one.of.name.ends_with(end)) return one;
     throw std::runtime_error("there is no " + end);
   }
@@ -125,7 +127,7 @@ TEST_F(MutationFiles, ACaseThatSetsACoefficientItselfDoesNotSeeIt) {
 TEST_F(MutationFiles, ARefusedValueIsNoMissingCase) {
   // The added mass of a spheroid that is as wide as long.
   const auto all = mutate(read("buoyancy_N: 98, added_mass_of_spheroid: {half_length_m: 0.5, radius_m: 0.5}"));
-  const tools::FidelityMutation& radius = named(all, "radius_m");
+  const verification::FidelityMutation& radius = named(all, "radius_m");
   EXPECT_THAT(radius.verdicts[1].refused, HasSubstr("'radius_m' must be <= 'half_length_m' 0.5, got 0.525"));
   EXPECT_EQ(radius.verdicts[0].refused, "");
 }
@@ -140,16 +142,16 @@ TEST_F(MutationFiles, AMatrixStaysSymmetric) {
   const auto pairs =
       mutate(read("buoyancy_N: 49.03325, derivatives: {Z_wdot: -10, Z_qdot: -0.3, M_wdot: -0.3, "
                   "M_qdot: -1}"));
-  const tools::FidelityMutation& pair = named(pairs, "Z_qdot, M_wdot");
+  const verification::FidelityMutation& pair = named(pairs, "Z_qdot, M_wdot");
   EXPECT_EQ(pair.of.changes(2).size(), 2u);
   EXPECT_EQ(pair.verdicts[0].refused, "");
 }
 
 TEST_F(MutationFiles, ThePageListsWhatIsUnseenWithItsReason) {
-  const tools::FidelityFile file =
+  const verification::FidelityFile file =
       read(half_buoyant, "",
            "without_effect: [{coefficient: \"bodies.b.hydrodynamics.inertia_kgm2[0]\", why: it does not roll}]\n");
-  const std::string page = tools::fidelity_mutations_page(mutate(file), 0.05, "cases.yaml");
+  const std::string page = verification::fidelity_mutations_page(mutate(file), 0.05, "cases.yaml");
   EXPECT_THAT(page, HasSubstr("| v | bodies.b.hydrodynamics.inertia_kgm2[0] | 2 | it does not roll |"));
   EXPECT_THAT(page, HasSubstr("| v | bodies.b.hydrodynamics.inertia_kgm2[1] | 3 | a case is missing |"));
   EXPECT_THAT(page, HasSubstr("| bodies.b.hydrodynamics.mass_kg | 10 | c | c |"));

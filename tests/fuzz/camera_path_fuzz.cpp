@@ -7,10 +7,10 @@
 // Key poses of the camera of a film, and its list of overlays.
 
 SHOAL_FUZZ_TARGET(camera_path) {
-  fuzz::allow<std::invalid_argument>([&] { tools::parse_overlays(std::string(fuzz::text_of(input))); });
+  fuzz::allow<std::invalid_argument>([&] { viewer::parse_overlays(std::string(fuzz::text_of(input))); });
   const std::string path = fuzz::write_scratch("path.yaml", input);
   fuzz::allow<sim::ConfigError>([&] {
-    const tools::CameraPath keys = tools::read_camera_path(path);
+    const viewer::CameraPath keys = viewer::read_camera_path(path);
     for (const double share : {-0.5, 0.0, 0.3, 0.9, 1.5})
       keys.at(keys.keys.front().at_s + share * (keys.keys.back().at_s - keys.keys.front().at_s));
   });

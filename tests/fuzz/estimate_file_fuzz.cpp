@@ -7,7 +7,7 @@
 
 SHOAL_FUZZ_TARGET(estimate_file) {
   fuzz::allow<sim::ConfigError>([&] {
-    const tools::EstimateFile file = tools::parse_estimates(fuzz::text_of(input), "estimates");
+    const experiment::EstimateFile file = experiment::parse_estimates(fuzz::text_of(input), "estimates");
     fuzz::require(!file.rows.empty(), "a file has an estimate");
     double before_s = -1e300;
     for (const auto& row : file.rows) {

@@ -16,8 +16,8 @@ SHOAL_FUZZ_TARGET(log) {
     fuzz::require(bytes <= input.size(), "events do not overlap");
   });
   fuzz::allow<std::runtime_error>([&] {
-    const tools::ReplayLog log = tools::read_replay_log(file.path());
-    tools::RecordedSteps steps(log);
+    const experiment::ReplayLog log = experiment::read_replay_log(file.path());
+    experiment::RecordedSteps steps(log);
     const auto use = [](std::string_view, std::span<const std::byte>) {};
     for (std::int64_t step = log.begin_step(); step <= log.last_step && step < log.begin_step() + 100; ++step) {
       steps.inputs_after(step, use);

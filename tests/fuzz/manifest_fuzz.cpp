@@ -19,7 +19,7 @@ SHOAL_FUZZ_TARGET(manifest) {
     case 0:
       fuzz::write_scratch("manifest.jsonl", reader.rest());
       fuzz::allow<std::runtime_error>([&] {
-        const tools::Manifest manifest(folder);
+        const experiment::Manifest manifest(folder);
         for (std::size_t i = 1; i <= manifest.size(); ++i)
           fuzz::require(manifest.run(i).index == i, "a run has the number of its line");
       });
@@ -27,28 +27,29 @@ SHOAL_FUZZ_TARGET(manifest) {
     case 1: {
       const std::string text(fuzz::text_of(reader.rest()));
       fuzz::allow<std::invalid_argument>([&] {
-        const auto indices = tools::parse_indices(text, 1000);
+        const auto indices = experiment::parse_indices(text, 1000);
         fuzz::require(std::is_sorted(indices.begin(), indices.end()), "numbers of runs are sorted");
-        fuzz::require(tools::parse_indices(tools::indices_text(indices), 1000) == indices, "and are written again");
+        fuzz::require(experiment::parse_indices(experiment::indices_text(indices), 1000) == indices,
+                      "and are written again");
       });
       break;
     }
     case 2: {
       const std::string text(fuzz::text_of(reader.rest()));
       fuzz::allow<std::invalid_argument>([&] {
-        fuzz::require(tools::parse_until(text, {"passed", "e.rms_m"}).bound > 0, "a bound is positive");
+        fuzz::require(experiment::parse_until(text, {"passed", "e.rms_m"}).bound > 0, "a bound is positive");
       });
       break;
     }
     case 3:
       fuzz::write_scratch("study_stamp.txt", reader.rest());
-      if (const auto stamp = tools::read_stamp(folder))
+      if (const auto stamp = experiment::read_stamp(folder))
         fuzz::require(stamp->inputs.size() == 16, "a stamp has a whole hash");
       break;
     default: {
       const std::string text(fuzz::text_of(reader.rest()));
       fuzz::allow<std::runtime_error>([&] {
-        for (const tools::StudyRow& row : tools::parse_study_rows(text, "study.csv"))
+        for (const experiment::StudyRow& row : experiment::parse_study_rows(text, "study.csv"))
           fuzz::require(row.seed >= 0, "a seed is not negative");
       });
     }

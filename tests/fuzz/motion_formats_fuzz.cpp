@@ -7,10 +7,10 @@
 namespace {
 
 /// A leg with names in all lists, so that words of the corpus are found.
-const tools::JointNames& names() {
-  static const tools::JointNames names("leg", {{"hip", "PRM:1", 0, false}, {"knee", "PRM:2", 0.5, false}},
-                                       {{"tekkotsu", "", false, {{"hip", "LFr:rotor"}, {"knee", "RFr:rotor"}}},
-                                        {"opencat", "", false, {{"hip", "8"}, {"knee", "9"}}}});
+const motion::JointNames& names() {
+  static const motion::JointNames names("leg", {{"hip", "PRM:1", 0, false}, {"knee", "PRM:2", 0.5, false}},
+                                        {{"tekkotsu", "", false, {{"hip", "LFr:rotor"}, {"knee", "RFr:rotor"}}},
+                                         {"opencat", "", false, {{"hip", "8"}, {"knee", "9"}}}});
   return names;
 }
 
@@ -40,30 +40,30 @@ void check_text(const sim::JointMotion& motion) {
   fuzz::require(diagnostics.ok(), "a motion that is written can be read");
 }
 
-void write_and_read(const tools::MotionFormat& format, const sim::JointMotion& motion) {
+void write_and_read(const motion::MotionFormat& format, const sim::JointMotion& motion) {
   if (format.write == nullptr && format.write_folder == nullptr) return;
   std::string bytes;
   try {
-    tools::Losses losses;
-    bytes = tools::bytes_of_motion(format, motion, {}, {}, losses);
+    motion::Losses losses;
+    bytes = motion::bytes_of_motion(format, motion, {}, {}, losses);
   } catch (const sim::ConfigError&) {
     return;  // the format cannot hold it
   }
   constexpr std::size_t max_bytes_read = 1'000'000;  // large files only take time
   if (format.read == nullptr || bytes.size() > max_bytes_read) return;
-  tools::Losses losses;
-  check(tools::motion_of_bytes(format, {bytes, "written", {}, {}, {}}, losses));
+  motion::Losses losses;
+  check(motion::motion_of_bytes(format, {bytes, "written", {}, {}, {}}, losses));
 }
 
 void read(const char* name, fuzz::Input input) {
-  const tools::MotionFormat& format = *tools::find_motion_format(name);
+  const motion::MotionFormat& format = *motion::find_motion_format(name);
   const std::string_view bytes = fuzz::text_of(input);
-  const tools::FormatOptions options;
-  for (const tools::JointNames& joints : {tools::JointNames(), names()})
+  const motion::FormatOptions options;
+  for (const motion::JointNames& joints : {motion::JointNames(), names()})
     fuzz::allow<sim::ConfigError>([&] {
-      tools::Losses losses;
-      const tools::MotionSource source{bytes, "file", joints, options, {}};
-      const sim::JointMotion motion = tools::motion_of_bytes(format, source, losses);
+      motion::Losses losses;
+      const motion::MotionSource source{bytes, "file", joints, options, {}};
+      const sim::JointMotion motion = motion::motion_of_bytes(format, source, losses);
       check(motion);
       check_text(motion);
       write_and_read(format, motion);
@@ -114,5 +114,5 @@ SHOAL_FUZZ_TARGET(motion_export) {
   motion.read(in);
   in.finish();
   if (!diagnostics.ok()) return;
-  for (const tools::MotionFormat& format : tools::motion_formats()) write_and_read(format, motion);
+  for (const motion::MotionFormat& format : motion::motion_formats()) write_and_read(format, motion);
 }

@@ -7,14 +7,15 @@
 
 SHOAL_FUZZ_TARGET(mrclam) {
   const std::string_view text = fuzz::text_of(input);
-  fuzz::allow<sim::ConfigError>([&] { tools::parse_mrclam_barcodes(text, "Barcodes.dat"); });
-  fuzz::allow<sim::ConfigError>([&] { tools::parse_mrclam_landmarks(text, "Landmark_Groundtruth.dat"); });
-  fuzz::allow<sim::ConfigError>([&] { tools::parse_mrclam_odometry(text, "Robot1_Odometry.dat"); });
-  fuzz::allow<sim::ConfigError>(
-      [&] { fuzz::require(!tools::parse_mrclam_truth(text, "Robot1_Groundtruth.dat").empty(), "a robot has a pose"); });
+  fuzz::allow<sim::ConfigError>([&] { experiment::parse_mrclam_barcodes(text, "Barcodes.dat"); });
+  fuzz::allow<sim::ConfigError>([&] { experiment::parse_mrclam_landmarks(text, "Landmark_Groundtruth.dat"); });
+  fuzz::allow<sim::ConfigError>([&] { experiment::parse_mrclam_odometry(text, "Robot1_Odometry.dat"); });
   fuzz::allow<sim::ConfigError>([&] {
-    tools::MrclamData::Robot robot;
-    tools::parse_mrclam_measurements(text, "Robot1_Measurement.dat", {{5, 1}, {14, 2}, {72, 6}}, robot);
+    fuzz::require(!experiment::parse_mrclam_truth(text, "Robot1_Groundtruth.dat").empty(), "a robot has a pose");
+  });
+  fuzz::allow<sim::ConfigError>([&] {
+    experiment::MrclamData::Robot robot;
+    experiment::parse_mrclam_measurements(text, "Robot1_Measurement.dat", {{5, 1}, {14, 2}, {72, 6}}, robot);
     double before_s = 0;
     for (const auto& measurement : robot.measurements) {
       fuzz::require(measurement.time_s >= before_s && measurement.subject > 0, "measurements in order, of subjects");

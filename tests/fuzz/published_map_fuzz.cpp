@@ -9,8 +9,8 @@
 
 SHOAL_FUZZ_TARGET(published_map) {
   fuzz::allow<shoal::MessageError>([&] {
-    const tools::PublishedMap published = tools::decode_map(input);
-    const tools::MapFrame& frame = published.map.frame;
+    const experiment::PublishedMap published = experiment::decode_map(input);
+    const experiment::MapFrame& frame = published.map.frame;
     fuzz::require(frame.width > 0 && frame.height > 0, "a map has cells");
     fuzz::require(published.map.cells.size() == frame.size(), "as many as its frame");
     fuzz::require(published.map.cells.size() <= input.size(), "not more than bytes arrived");

@@ -12,7 +12,7 @@
 namespace {
 
 void add_pieces(fuzz::Reader& reader) {
-  tools::SnapshotPieces pieces;
+  experiment::SnapshotPieces pieces;
   while (!reader.ended()) {
     shoal::sim_snapshot_t piece{};
     piece.step = reader.byte();
@@ -37,16 +37,16 @@ SHOAL_FUZZ_TARGET(results) {
   switch (reader.below(4)) {
     case 0:
       fuzz::write_scratch("summary.json", reader.rest());
-      fuzz::allow<std::runtime_error>([] { tools::read_run(fuzz::scratch_folder().string()); });
+      fuzz::allow<std::runtime_error>([] { experiment::read_run(fuzz::scratch_folder().string()); });
       break;
     case 1: {
       const std::string path = fuzz::write_scratch("errors.csv", reader.rest());
-      tools::bands_of({tools::read_error_curve(path, "m", "time_s")});
+      experiment::bands_of({experiment::read_error_curve(path, "m", "time_s")});
       break;
     }
     case 2: {
-      tools::KeySequences keys;
-      tools::KeySequences::Clock::time_point now{};
+      experiment::KeySequences keys;
+      experiment::KeySequences::Clock::time_point now{};
       while (!reader.ended()) keys.next(static_cast<char>(reader.byte()), now += std::chrono::milliseconds(7));
       keys.alone(now);
       break;

@@ -12,9 +12,9 @@ SHOAL_FUZZ_TARGET(snapshot_file) {
     const std::uint32_t sum = sim::crc32(std::span(bytes).first(bytes.size() - checksum_bytes));
     std::memcpy(bytes.data() + bytes.size() - checksum_bytes, &sum, sizeof sum);
   }
-  fuzz::allow<tools::SnapshotFileError>([&] {
-    const tools::Snapshot snapshot = tools::snapshot_from_bytes(bytes, "fuzz");
-    const tools::Snapshot again = tools::snapshot_from_bytes(tools::to_bytes(snapshot), "again");
+  fuzz::allow<experiment::SnapshotFileError>([&] {
+    const experiment::Snapshot snapshot = experiment::snapshot_from_bytes(bytes, "fuzz");
+    const experiment::Snapshot again = experiment::snapshot_from_bytes(experiment::to_bytes(snapshot), "again");
     fuzz::require(again.state == snapshot.state && again.step == snapshot.step, "a snapshot is written as it was read");
   });
 }

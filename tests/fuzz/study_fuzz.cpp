@@ -17,13 +17,13 @@ SHOAL_FUZZ_TARGET(study) {
   const std::size_t kind = reader.below(4);
   const fuzz::Input rest = reader.rest();
   if (kind == 3) {
-    fuzz::allow<std::invalid_argument>([&] { tools::parse_seeds(std::string(fuzz::text_of(rest))); });
+    fuzz::allow<std::invalid_argument>([&] { experiment::parse_seeds(std::string(fuzz::text_of(rest))); });
     return;
   }
   const std::string path = fuzz::write_scratch(kind == 2 ? "reference.csv" : "study.yaml", rest);
   fuzz::allow<sim::ConfigError>([&] {
-    if (kind == 0) tools::load_study(path);
-    if (kind == 1) tools::read_fidelity_file(path);
-    if (kind == 2) tools::read_fidelity_reference(path);
+    if (kind == 0) experiment::load_study(path);
+    if (kind == 1) verification::read_fidelity_file(path);
+    if (kind == 2) verification::read_fidelity_reference(path);
   });
 }

@@ -35,7 +35,7 @@ void check_message(std::string_view text) {
 /// A request for a time is read or refused, and its numbers are bounded.
 void check_look(const std::string& text) {
   fuzz::allow<std::runtime_error>([&] {
-    const tools::LookRequest look = tools::parse_look(text);
+    const viewer::LookRequest look = viewer::parse_look(text);
     if (look.time_us)
       fuzz::require(std::abs(static_cast<double>(*look.time_us)) <= 1e18, "the time of a look is bounded");
     fuzz::require(look.branch.value_or(0) >= 0, "a branch has a number from 0 on");
@@ -43,21 +43,21 @@ void check_look(const std::string& text) {
 }
 
 void check_subscribe(std::string_view text) {
-  fuzz::allow<tools::PageRequestError>([&] {
-    const auto subscriptions = tools::parse_subscribe(text);
-    fuzz::require(subscriptions.size() <= tools::max_subscriptions, "the channels of a page are bounded");
-    for (const tools::Subscription& each : subscriptions) {
+  fuzz::allow<viewer::PageRequestError>([&] {
+    const auto subscriptions = viewer::parse_subscribe(text);
+    fuzz::require(subscriptions.size() <= viewer::max_subscriptions, "the channels of a page are bounded");
+    for (const viewer::Subscription& each : subscriptions) {
       fuzz::require(!each.channel.empty() && each.channel.size() <= 63, "the name of a channel is bounded");
-      fuzz::require(each.rate_hz > 0 && each.rate_hz <= tools::max_subscription_rate_hz, "a rate is bounded");
+      fuzz::require(each.rate_hz > 0 && each.rate_hz <= viewer::max_subscription_rate_hz, "a rate is bounded");
     }
   });
 }
 
 void check_series(std::string_view text) {
-  fuzz::allow<tools::PageRequestError>([&] {
-    const tools::SeriesRequest series = tools::parse_series(text);
+  fuzz::allow<viewer::PageRequestError>([&] {
+    const viewer::SeriesRequest series = viewer::parse_series(text);
     fuzz::require(series.from_us <= series.to_us, "a series has a range of time");
-    fuzz::require(series.points >= 2 && series.points <= tools::max_series_points, "the points are bounded");
+    fuzz::require(series.points >= 2 && series.points <= viewer::max_series_points, "the points are bounded");
     fuzz::require(nlohmann::json::accept(series.id), "the id of an answer is JSON");
   });
 }
@@ -72,7 +72,7 @@ void check_frame(fuzz::Input input) {
   for (std::size_t i = 0; i < std::min<std::size_t>(8, payload.size()); ++i)
     payload[i] = static_cast<std::byte>(type->second.fingerprint >> (56 - 8 * i));
   for (const auto bytes : {whole, std::as_bytes(std::span(payload))}) {
-    const std::string frame = tools::message_frame(shoal::embedded_types(), fuzz::text_of(input), bytes, 1);
+    const std::string frame = viewer::message_frame(shoal::embedded_types(), fuzz::text_of(input), bytes, 1);
     std::uint32_t header_bytes = 0;
     std::memcpy(&header_bytes, frame.data() + 4, sizeof header_bytes);
     fuzz::require(header_bytes % 8 == 0 && 32 + header_bytes <= frame.size(), "the header is within the frame");

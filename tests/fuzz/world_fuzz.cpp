@@ -15,7 +15,7 @@ SHOAL_FUZZ_TARGET(world) {
     const auto loaded = sim::load_world_text(std::string(fuzz::text_of(input)), "worlds/fuzz.yaml", options);
     sim::Warnings warnings;
     sim::warn_of_config(loaded.config, loaded.resolved, warnings);
-    tools::warn_of_processes(loaded, warnings);
-    tools::warn_of_missing_programs(loaded, warnings);
+    experiment::warn_of_processes(loaded, warnings);
+    experiment::warn_of_missing_programs(loaded, warnings);
   });
 }

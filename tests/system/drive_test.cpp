@@ -121,13 +121,13 @@ std::string own_bus() {
 std::string pad_events(double until_s) {
   std::string bytes;
   const auto add = [&bytes](double at_s, std::uint16_t type, std::uint16_t code, std::int32_t value) {
-    const auto event = tools::bytes_of({1'000'000 + std::llround(at_s * 1e6), type, code, value});
+    const auto event = experiment::bytes_of({1'000'000 + std::llround(at_s * 1e6), type, code, value});
     bytes.append(reinterpret_cast<const char*>(event.data()), event.size());
   };
-  add(0, tools::InputEvent::axis, 1, -32768);
-  add(0.1, tools::InputEvent::button, 310, 1);
-  add(until_s, tools::InputEvent::button, 310, 0);
-  add(until_s + 0.5, tools::InputEvent::report, 0, 0);
+  add(0, experiment::InputEvent::axis, 1, -32768);
+  add(0.1, experiment::InputEvent::button, 310, 1);
+  add(until_s, experiment::InputEvent::button, 310, 0);
+  add(until_s + 0.5, experiment::InputEvent::report, 0, 0);
   return bytes;
 }
 

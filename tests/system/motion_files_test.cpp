@@ -49,7 +49,7 @@ class MotionFiles : public testing::Test {
         "        - {name: group, type: joint_group}\n"
         "        - {name: player, type: motion_player, group: group}\n");
   }
-  std::string journal() const { return tools::journal_path(file("wave.yaml")); }
+  std::string journal() const { return motion::journal_path(file("wave.yaml")); }
   Ended recover() const { return motion({"record", file("wave.yaml"), "--recover"}); }
 
   ScratchFolder folder_;

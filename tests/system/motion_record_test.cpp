@@ -14,10 +14,10 @@
 namespace {
 
 using namespace system_test;
+using experiment::InputEvent;
 using testing::HasSubstr;
 using testing::MatchesRegex;
 using testing::Not;
-using tools::InputEvent;
 
 struct Stroke {
   double at_s;
@@ -30,7 +30,7 @@ struct Stroke {
 std::string events_of(const std::vector<Stroke>& strokes, double end_s) {
   std::string bytes;
   const auto add = [&](const Stroke& stroke) {
-    const auto event = tools::bytes_of(
+    const auto event = experiment::bytes_of(
         {1'700'000'000'000'000 + std::llround(stroke.at_s * 1e6), stroke.type, stroke.code, stroke.value});
     bytes.append(reinterpret_cast<const char*>(event.data()), event.size());
   };
@@ -306,23 +306,23 @@ TEST_F(MotionRecord, AKilledProgramLosesNothing) {
     OnTerminal terminal(program);
     ASSERT_TRUE(terminal.shows("enter ends"));
     terminal.press("3");
-    const std::string journal = tools::journal_path(file_);
+    const std::string journal = motion::journal_path(file_);
     ASSERT_TRUE(await(
         [&] {
           return std::filesystem::exists(journal) && std::filesystem::file_size(journal) > 1000 &&
-                 tools::read_take(journal).frame_count() > 100;
+                 motion::read_take(journal).frame_count() > 100;
         },
         timeout));
     // No other process can record or recover it now.
     EXPECT_THAT(run_shoal({"motion", "record", file_, "--recover"}).errors, HasSubstr("by another process"));
     kill(terminal.pid(), SIGKILL);
     EXPECT_EQ(terminal.wait(), 128 + SIGKILL);
-    before = tools::read_take(journal).frame_count();
+    before = motion::read_take(journal).frame_count();
   }
   const Ended recovered = run_shoal({"motion", "record", file_, "--recover"});
   EXPECT_EQ(recovered.exit_code, 0) << recovered.errors;
   EXPECT_THAT(recovered.errors, HasSubstr("recovered a recording of"));
-  EXPECT_FALSE(std::filesystem::exists(tools::journal_path(file_)));
+  EXPECT_FALSE(std::filesystem::exists(motion::journal_path(file_)));
   const std::string csv = text_of_file(frames());
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), static_cast<std::ptrdiff_t>(before + 1));
   EXPECT_THAT(text_of_file(file_), HasSubstr("lf_swing: "));
@@ -338,7 +338,7 @@ TEST_F(MotionRecord, AClosedTerminalSavesTheRecording) {
   kill(terminal.pid(), SIGHUP);
   EXPECT_EQ(terminal.wait(), 0);
   EXPECT_TRUE(std::filesystem::exists(file_));
-  EXPECT_FALSE(std::filesystem::exists(tools::journal_path(file_)));
+  EXPECT_FALSE(std::filesystem::exists(motion::journal_path(file_)));
 }
 
 TEST_F(MotionRecord, ATerminalWithReleasesMovesJointsWhileTheirKeysAreHeld) {
@@ -403,7 +403,7 @@ TEST_F(MotionRecord, ItsLineHasTheStaticMarginInRedWhereItIsSmall) {
 TEST_F(MotionRecord, SaysWhatIsWrong) {
   EXPECT_THAT(run_shoal({"motion", "record", file_}).errors, HasSubstr("needs --world"));
   EXPECT_THAT(run_shoal(arguments({})).errors, HasSubstr("needs a terminal, or --input or --events"));
-  EXPECT_FALSE(std::filesystem::exists(tools::journal_path(file_)));
+  EXPECT_FALSE(std::filesystem::exists(motion::journal_path(file_)));
   EXPECT_THAT(run_shoal(arguments({"--input", "/dev/nothing"})).errors, HasSubstr("/dev/nothing: cannot be opened"));
   EXPECT_THAT(run_shoal(arguments({"--events", folder_.file("none")})).errors, HasSubstr("none: cannot be read"));
   EXPECT_THAT(record({}, 0.1, {"--overdub", "tail"}).errors, HasSubstr("wave.yaml"));

@@ -53,7 +53,7 @@ TEST(Series, OfALogAreTheColumnsOfLogCsv) {
   const Ended run = run_shoal({"run", source("worlds/coop_land.yaml"), "--bus", "none", "--quiet", "--speed", "max",
                                "--duration", "4", "--record", log});
   ASSERT_EQ(run.exit_code, 0) << run.errors;
-  const tools::LogIndex index(log);
+  const viewer::LogIndex index(log);
   bridges::EventLogReader reader(log);
   int compared = 0;
   for (const char* channel : {"rover3.odometry", "rover1.gps", "rover1.lidar", "sim.state", "sim.bodies"}) {
@@ -63,9 +63,9 @@ TEST(Series, OfALogAreTheColumnsOfLogCsv) {
     std::size_t number = 0;
     for (const auto& [field, values] : table.columns) {
       if (++number > 40 && number % 40 != 0) continue;
-      const tools::SeriesRequest request{"1", channel, field, index.start_us(), index.end_us(), 4000};
-      const tools::Series series =
-          tools::read_series(reader, index, request, std::chrono::steady_clock::now() + timeout);
+      const viewer::SeriesRequest request{"1", channel, field, index.start_us(), index.end_us(), 4000};
+      const viewer::Series series =
+          viewer::read_series(reader, index, request, std::chrono::steady_clock::now() + timeout);
       ASSERT_EQ(series.values.size(), values.size()) << channel << ' ' << field;
       for (std::size_t i = 0; i < values.size(); ++i) {
         EXPECT_EQ(series.t_us[i], table.utime[i] - index.epoch_us()) << channel << ' ' << field;

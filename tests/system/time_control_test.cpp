@@ -508,9 +508,9 @@ TEST(Restore, OneThatDoesNotFitLeavesNoBranchBehind) {
   live.run_until("2");
   EXPECT_EQ(control({"snapshot", "good"}).exit_code, 0);
   // Of the same world, with a state that has bytes too many.
-  tools::Snapshot bad = tools::read_snapshot(folder.file("snaps/good.snapshot"));
+  experiment::Snapshot bad = experiment::read_snapshot(folder.file("snaps/good.snapshot"));
   bad.state.push_back(std::byte{1});
-  tools::write_snapshot(folder.file("snaps/bad.snapshot"), bad);
+  experiment::write_snapshot(folder.file("snaps/bad.snapshot"), bad);
   const std::string before = Live::where();
   const Ended refused = control({"restore", "bad"});
   EXPECT_EQ(refused.exit_code, 1) << refused.output;

@@ -23,9 +23,10 @@ void print_rows(const Rows& rows) {
   std::cout << sim::two_columns(rows, static_cast<std::size_t>(sim::text_columns(STDOUT_FILENO)));
 }
 
-void print_shipped(ShippedKind kind) {
+void print_shipped(experiment::ShippedKind kind) {
   Rows rows;
-  for (const ShippedFile& file : shipped_files(kind)) rows.emplace_back(file.name, sim::printable(file.description));
+  for (const experiment::ShippedFile& file : experiment::shipped_files(kind))
+    rows.emplace_back(file.name, sim::printable(file.description));
   print_rows(rows);
 }
 
@@ -53,16 +54,16 @@ int list(const std::string& what) {
   }
   if (what == "devices") print_devices();
   if (what == "messages") print_messages();
-  if (what == "worlds") print_shipped(ShippedKind::world);
-  if (what == "vehicles") print_shipped(ShippedKind::vehicle);
-  if (what == "studies") print_shipped(ShippedKind::study);
+  if (what == "worlds") print_shipped(experiment::ShippedKind::world);
+  if (what == "vehicles") print_shipped(experiment::ShippedKind::vehicle);
+  if (what == "studies") print_shipped(experiment::ShippedKind::study);
   if (!what.empty()) return exit_ok;
   std::cout << "Worlds, for `shoal run NAME`:\n";
-  print_shipped(ShippedKind::world);
+  print_shipped(experiment::ShippedKind::world);
   std::cout << "\nStudies, for `shoal study NAME`:\n";
-  print_shipped(ShippedKind::study);
+  print_shipped(experiment::ShippedKind::study);
   std::cout << "\nVehicles, for `file: NAME.yaml` in a world:\n";
-  print_shipped(ShippedKind::vehicle);
+  print_shipped(experiment::ShippedKind::vehicle);
   std::cout << "\nThe files are in " << sim::shipped_folder() << "\n";
   return exit_ok;
 }

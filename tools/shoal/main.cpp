@@ -30,7 +30,7 @@ volatile std::sig_atomic_t output_was_closed = 0;
 /// Versions of the program, its libraries and the files that it reads, and where the shipped ones are.
 std::string versions() {
   const std::string shipped = sim::shipped_folder();
-  return tools::version_text() + "machine: " + tools::build_text() +
+  return experiment::version_text() + "machine: " + experiment::build_text() +
          "\nworlds and vehicles: " + (shipped.empty() ? "none were found" : shipped) + ", format " +
          std::to_string(sim::VehicleConfig{}.shoal) + "\n";
 }

@@ -28,7 +28,7 @@ namespace {
 struct RunArguments {
   std::string world;
   sim::LoadOptions load;
-  RunOptions run;
+  experiment::RunOptions run;
   std::string speed;
   std::string from;
   std::string snapshot_at;
@@ -36,7 +36,7 @@ struct RunArguments {
   bool with_page = false;
   bool watch = false;
   bool open = false;
-  ViewOptions view;
+  experiment::ViewOptions view;
 };
 
 /// Parses times in s: `10,20.5`.
@@ -56,19 +56,20 @@ std::vector<double> parse_times(const std::string& text) {
 /// Loads the world of a snapshot, with the values that the command line sets.
 sim::LoadedWorld load_from(RunArguments& arguments) {
   if (arguments.load.seed) throw CLI::ValidationError("--seed", "cannot be changed in a snapshot");
-  arguments.run.from = read_snapshot(arguments.from);
+  arguments.run.from = experiment::read_snapshot(arguments.from);
   arguments.run.from_file = arguments.from;
-  check_version(*arguments.run.from, arguments.from, short_version());
-  check_files(*arguments.run.from, arguments.from);
-  allow_files(arguments.run.from->files, arguments.load);
+  experiment::check_version(*arguments.run.from, arguments.from, experiment::short_version());
+  experiment::check_files(*arguments.run.from, arguments.from);
+  experiment::allow_files(arguments.run.from->files, arguments.load);
   return sim::load_world_text(arguments.run.from->resolved_world, arguments.from, arguments.load);
 }
 
 /// Reads the world, and checks the arguments of its programs.
 sim::LoadedWorld load_with_programs(RunArguments& arguments) {
-  sim::LoadedWorld loaded =
-      arguments.from.empty() ? sim::load_world(world_file(arguments.world), arguments.load) : load_from(arguments);
-  read_programs(loaded, {arguments.run.launch, arguments.load.allow_paths});
+  sim::LoadedWorld loaded = arguments.from.empty()
+                                ? sim::load_world(experiment::world_file(arguments.world), arguments.load)
+                                : load_from(arguments);
+  experiment::read_programs(loaded, {arguments.run.launch, arguments.load.allow_paths});
   return loaded;
 }
 
@@ -80,7 +81,7 @@ int run_loaded(const sim::LoadedWorld& loaded, RunArguments& arguments) {
     arguments.run.speed = 1;
     sim::log_info("--view: running in real time; --speed max runs as fast as possible");
   }
-  const Summary summary = run_world(loaded, arguments.run);
+  const experiment::Summary summary = experiment::run_world(loaded, arguments.run);
   if (!summary.error.empty()) std::cerr << "shoal: " << summary.error << '\n';
   // Print the summary even if it could not be saved: on stderr when stdout leads to the same full disk.
   std::error_code ignored;
@@ -91,7 +92,7 @@ int run_loaded(const sim::LoadedWorld& loaded, RunArguments& arguments) {
   if (summary.steps > 0 && !arguments.run.results.empty() && !arguments.run.quiet && saved)
     std::cout << "  results in " << arguments.run.results << "/ (summary.json, tracks.png)\n";
   if (summary.ended == "fault" || summary.ended == "error")
-    std::cerr << bug_hint(arguments.run.results, arguments.run.record) << '\n';
+    std::cerr << experiment::bug_hint(arguments.run.results, arguments.run.record) << '\n';
   return summary.exit_code;
 }
 
@@ -111,7 +112,7 @@ int run(RunArguments& arguments) {
   const bool nowhere = arguments.run.snapshots.empty() && arguments.run.results.empty();
   if (nowhere && (!arguments.snapshot_at.empty() || arguments.run.snapshot_every_s))
     throw CLI::ValidationError("--snapshot-at", "needs --snapshots DIR or --results DIR");
-  Browser browser;
+  experiment::Browser browser;
   if (arguments.open) arguments.view.opened = [&browser](const std::string& url) { browser.open(url); };
   if (arguments.with_page) {
     load_library("page");
@@ -123,13 +124,14 @@ int run(RunArguments& arguments) {
   if (arguments.watch && (writes || !arguments.from.empty()))
     throw CLI::ValidationError("--watch", "cannot be given with --results, --record or --from");
   if (arguments.watch) {
-    catch_signals(true);
+    experiment::catch_signals(true);
     return live_page->run_watched(
-        world_file(arguments.world), arguments.run, arguments.view, [&] { return load_with_programs(arguments); },
+        experiment::world_file(arguments.world), arguments.run, arguments.view,
+        [&] { return load_with_programs(arguments); },
         [&](const sim::LoadedWorld& loaded) { return run_loaded(loaded, arguments); });
   }
   const sim::LoadedWorld loaded = load_with_programs(arguments);
-  catch_signals(true);
+  experiment::catch_signals(true);
   return run_loaded(loaded, arguments);
 }
 

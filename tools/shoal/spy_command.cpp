@@ -131,7 +131,7 @@ int spy(const SpyArguments& arguments) {
     listener.listen_to_all();
   else
     listener.listen(arguments.channel);
-  catch_signals(false);
+  experiment::catch_signals(false);
   const bool table = arguments.channel.empty();
   const bool terminal = isatty(STDOUT_FILENO) != 0;
   // In a pipe, rates over whole seconds; with a duration a single table for all of it.
@@ -148,7 +148,8 @@ int spy(const SpyArguments& arguments) {
   bool closed = false;
   const auto over = [&] {
     closed = output_closed();
-    return closed || caught_signal() != 0 || (arguments.duration_s > 0 && seconds_since(begin) > arguments.duration_s);
+    return closed || experiment::caught_signal() != 0 ||
+           (arguments.duration_s > 0 && seconds_since(begin) > arguments.duration_s);
   };
   bool any_table = false;
   // Count the messages and print the table regularly.

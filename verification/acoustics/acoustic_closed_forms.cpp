@@ -18,7 +18,7 @@
 #include "sim/medium/absorption.hpp"
 #include "sim/medium/sea_water.hpp"
 
-namespace tools {
+namespace verification {
 
 namespace {
 
@@ -150,4 +150,4 @@ std::string closed_forms_text(const std::vector<ClosedFormRow>& rows) {
   return text;
 }
 
-}  // namespace tools
+}  // namespace verification

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace tools {
+namespace verification {
 
 /// Row of a file of closed-form results, with the result of the simulator.
 struct ClosedFormRow {
@@ -22,4 +22,4 @@ std::vector<ClosedFormRow> acoustic_closed_forms(const std::string& file);
 /// Returns the rows as a table in Markdown.
 std::string closed_forms_text(const std::vector<ClosedFormRow>& rows);
 
-}  // namespace tools
+}  // namespace verification

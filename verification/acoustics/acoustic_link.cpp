@@ -18,7 +18,7 @@
 #include "sim/acoustics/sound_path.hpp"
 #include "sim/random/random.hpp"
 
-namespace tools {
+namespace verification {
 
 namespace {
 
@@ -249,4 +249,4 @@ std::vector<RangeRow> over_range(const AcousticLink& link, const std::vector<Aco
   return rows;
 }
 
-}  // namespace tools
+}  // namespace verification

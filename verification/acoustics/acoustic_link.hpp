@@ -11,7 +11,7 @@
 #include "sim/acoustics/modulation.hpp"
 #include "sim/medium/medium.hpp"
 
-namespace tools {
+namespace verification {
 
 /// Packet that is received only when all of its bits are correct.
 struct AcousticPacket {
@@ -100,4 +100,4 @@ std::string csv_text(const std::vector<RangeRow>& rows, const std::vector<Acoust
 void draw_over_range(const std::vector<RangeRow>& rows, const std::vector<AcousticPacket>& packets,
                      const std::string& title, const std::string& png);
 
-}  // namespace tools
+}  // namespace verification

@@ -13,7 +13,7 @@
 
 // Output of a link: readable tables, CSV for programs, plots.
 
-namespace tools {
+namespace verification {
 
 namespace {
 
@@ -122,7 +122,7 @@ std::string csv_text(const std::vector<RangeRow>& rows, const std::vector<Acoust
 
 void draw_over_range(const std::vector<RangeRow>& rows, const std::vector<AcousticPacket>& packets,
                      const std::string& title, const std::string& png) {
-  const ScratchDirectory scratch;
+  const experiment::ScratchDirectory scratch;
   std::ofstream(scratch.path / "data.csv") << csv_text(rows, packets);
   std::string script = fmt::format(
       "set datafile separator ','\nset terminal pngcairo size 900,640\nset output {}\n"
@@ -131,17 +131,18 @@ void draw_over_range(const std::vector<RangeRow>& rows, const std::vector<Acoust
       "set rmargin 30\nset xlabel 'range (m)'\nset ylabel 'signal over noise (dB)'\n"
       "plot 'data.csv' skip 1 using 1:5 with lines lw 2 title 'mean, in the band'\n"
       "set ylabel 'delivered'\nset yrange [-0.02:1.02]\nplot ",
-      gnuplot_text(std::filesystem::absolute(png).string()), gnuplot_text(title));
+      experiment::gnuplot_text(std::filesystem::absolute(png).string()), experiment::gnuplot_text(title));
   for (std::size_t i = 0; i < packets.size(); ++i)
-    script += fmt::format("{}'data.csv' skip 1 using 1:{} with lines lw 2 title {}", i == 0 ? "" : ", ", 6 + i,
-                          gnuplot_text(fmt::format("{} {:g} bit/s, {} B", sim::to_string(packets[i].modulation),
-                                                   packets[i].bit_rate_bps, packets[i].bytes)));
+    script +=
+        fmt::format("{}'data.csv' skip 1 using 1:{} with lines lw 2 title {}", i == 0 ? "" : ", ", 6 + i,
+                    experiment::gnuplot_text(fmt::format("{} {:g} bit/s, {} B", sim::to_string(packets[i].modulation),
+                                                         packets[i].bit_rate_bps, packets[i].bytes)));
   std::ofstream(scratch.path / "plot.gp") << script << "\nunset multiplot\n";
-  if (run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(30), [] { return false; })) return;
+  if (experiment::run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(30), [] { return false; })) return;
   std::ifstream reported(scratch.path / "plot.log");
   std::string line;
   std::getline(reported, line);
   throw std::runtime_error("gnuplot did not draw " + png + (line.empty() ? "" : ": " + line));
 }
 
-}  // namespace tools
+}  // namespace verification

@@ -15,7 +15,7 @@
 #include "sim/acoustics/ray_paths.hpp"
 #include "sim/acoustics/rays/ray_tables.hpp"
 
-namespace tools {
+namespace verification {
 
 namespace {
 
@@ -83,7 +83,7 @@ RayField ray_field(double source_m, double range_m, double frequency_Hz, const s
 }
 
 void draw_rays(const RayField& field, const std::string& title, const std::string& png) {
-  const ScratchDirectory scratch;
+  const experiment::ScratchDirectory scratch;
   std::ofstream profile(scratch.path / "profile.dat"), fan(scratch.path / "fan.dat"), loss(scratch.path / "loss.dat"),
       shadow(scratch.path / "shadow.dat");
   for (const sim::SoundProfile::Knot& knot : field.profile)
@@ -124,11 +124,12 @@ void draw_rays(const RayField& field, const std::string& title, const std::strin
       "plot 'loss.dat' using 1:2:3 with image notitle, 'shadow.dat' using 1:2:3:4:5:6 with rgbalpha notitle, "
       "'fan.dat' using 1:2 with lines lc rgb '#60000000' lw 0.7 notitle, "
       "'-' using 1:2 with points pt 7 ps 1.4 lc rgb 'black' notitle\n0 {}\ne\nunset multiplot\n",
-      gnuplot_text(std::filesystem::absolute(png).string()), gnuplot_text(title), field.deepest_m, speed_step_mps,
-      field.range_m, std::isfinite(min_dB) ? std::max(min_dB, max_dB - 60) : 0, std::max(max_dB, 1.0), field.source_m);
+      experiment::gnuplot_text(std::filesystem::absolute(png).string()), experiment::gnuplot_text(title),
+      field.deepest_m, speed_step_mps, field.range_m, std::isfinite(min_dB) ? std::max(min_dB, max_dB - 60) : 0,
+      std::max(max_dB, 1.0), field.source_m);
   std::ofstream(scratch.path / "plot.gp") << script;
-  if (!run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(60), [] { return false; }))
+  if (!experiment::run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(60), [] { return false; }))
     throw std::runtime_error("gnuplot could not draw " + png);
 }
 
-}  // namespace tools
+}  // namespace verification

@@ -9,7 +9,7 @@
 #include "sim/acoustics/rays/ray_trace.hpp"
 #include "sim/medium/medium.hpp"
 
-namespace tools {
+namespace verification {
 
 /// Sound of one source in the vertical plane.
 struct RayField {
@@ -35,4 +35,4 @@ RayField ray_field(double source_m, double range_m, double frequency_Hz, const s
 /// std::runtime_error when gnuplot fails.
 void draw_rays(const RayField& field, const std::string& title, const std::string& png);
 
-}  // namespace tools
+}  // namespace verification

@@ -12,7 +12,7 @@
 #include "sim/config/diagnostics.hpp"
 #include "verification/bench/bench_figures.hpp"
 
-namespace tools {
+namespace verification {
 
 namespace {
 
@@ -102,4 +102,4 @@ BenchFigures measure_bench_apart(const BenchScene& scene, int vehicles, int thre
   throw std::runtime_error(who + ": " + (text.empty() ? "its process ended" : text.substr(1)));
 }
 
-}  // namespace tools
+}  // namespace verification

@@ -15,7 +15,7 @@
 #include "sim/world/world_state.hpp"
 #include "verification/bench/bench_run.hpp"
 
-namespace tools {
+namespace verification {
 
 namespace {
 
@@ -125,4 +125,4 @@ std::string bench_csv_line(const BenchScene& scene, const BenchFigures& figures)
   return line + "\n";
 }
 
-}  // namespace tools
+}  // namespace verification

@@ -10,7 +10,7 @@
 #include "sim/vehicle/stage_times.hpp"
 #include "verification/bench/bench_scene.hpp"
 
-namespace tools {
+namespace verification {
 
 struct BenchOptions {
   double warm_up_s = 10;          ///< simulated time before the measurement
@@ -59,4 +59,4 @@ std::string bench_csv_head();
 /// Returns the line of a run.
 std::string bench_csv_line(const BenchScene& scene, const BenchFigures& figures);
 
-}  // namespace tools
+}  // namespace verification

@@ -5,7 +5,7 @@
 #include "sim/vehicle/stage_times.hpp"
 #include "sim/world/world_state.hpp"
 
-namespace tools {
+namespace verification {
 
 namespace {
 
@@ -46,4 +46,4 @@ void BenchRun::measure_stages(sim::StageTimes* times) {
   world_->state().measure_stages(times);
 }
 
-}  // namespace tools
+}  // namespace verification

@@ -10,7 +10,7 @@
 #include "sim/world_file/load_world.hpp"
 #include "verification/bench/bench_scene.hpp"
 
-namespace tools {
+namespace verification {
 
 /// Running benchmark scene: a world and the programs of its vehicles in one process, all messages on the in-process
 /// bus.
@@ -39,4 +39,4 @@ class BenchRun {
   double programs_s_ = 0;
 };
 
-}  // namespace tools
+}  // namespace verification

@@ -8,7 +8,7 @@
 #include "sim/bus/bus.hpp"
 #include "sim/world/world.hpp"
 
-namespace tools {
+namespace verification {
 
 /// Programs of a benchmark scene, connected to the bus like external ones.
 class ScenePrograms {
@@ -46,4 +46,4 @@ const std::vector<BenchScene>& bench_scenes();
 /// Returns a scene by its name; null when there is none.
 const BenchScene* find_bench_scene(const std::string& name);
 
-}  // namespace tools
+}  // namespace verification

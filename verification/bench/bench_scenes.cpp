@@ -3,7 +3,7 @@
 
 #include "verification/bench/bench_scene.hpp"
 
-namespace tools {
+namespace verification {
 
 const std::vector<BenchScene>& bench_scenes() {
   static const std::vector<BenchScene> all = {land_scene(),      scale_scene(),         crowd_scene(), sea_scene(),
@@ -18,4 +18,4 @@ const BenchScene* find_bench_scene(const std::string& name) {
   return found != all.end() ? &*found : nullptr;
 }
 
-}  // namespace tools
+}  // namespace verification

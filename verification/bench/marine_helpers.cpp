@@ -9,7 +9,7 @@
 #include "shoal/helm_command_t.hpp"
 #include "shoal/message_codec.hpp"
 
-namespace tools {
+namespace verification {
 
 namespace {
 
@@ -56,4 +56,4 @@ void set_off_autopilot(const sim::Vehicle& vehicle, int index, sim::Bus& bus) {
   bus.publish(vehicle.name() + ".autopilot.cmd", shoal::encode(helm), {});
 }
 
-}  // namespace tools
+}  // namespace verification

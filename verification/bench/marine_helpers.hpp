@@ -6,7 +6,7 @@
 
 #include "verification/bench/bench_scene.hpp"
 
-namespace tools {
+namespace verification {
 
 /// Fleet of one kind in deep water.
 struct MarineFleet {
@@ -45,4 +45,4 @@ void set_off_otter(const sim::Vehicle& vehicle, int index, sim::Bus& bus);
 /// Gives the autopilot of a vehicle a speed, a heading and a depth by its index.
 void set_off_autopilot(const sim::Vehicle& vehicle, int index, sim::Bus& bus);
 
-}  // namespace tools
+}  // namespace verification

@@ -13,7 +13,7 @@
 #include "shoal/twist_command_t.hpp"
 #include "sim/world/world_state.hpp"
 
-namespace tools {
+namespace verification {
 
 namespace {
 
@@ -162,4 +162,4 @@ std::unique_ptr<ScenePrograms> wanderers(const sim::World& world, sim::Bus& bus)
   return std::make_unique<Wanderers>(world, bus);
 }
 
-}  // namespace tools
+}  // namespace verification

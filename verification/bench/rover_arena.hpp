@@ -6,7 +6,7 @@
 
 #include "verification/bench/bench_scene.hpp"
 
-namespace tools {
+namespace verification {
 
 /// Arena of wandering rovers, of the scenes `land` and `scale`: cells of 2 m (1 robot: one cell of 4 m; 10: 5 x 2; 100:
 /// 10 x 10; 1000: 40 x 25; otherwise as square as possible), walls 0.1 m thick and 0.5 m high around it, robots / 4
@@ -32,4 +32,4 @@ std::string land_scene_text(int robots, bool one_entry_each = false);
 /// Returns programs of all vehicles with a lidar and a drive: they wander, one step for each scan.
 std::unique_ptr<ScenePrograms> wanderers(const sim::World& world, sim::Bus& bus);
 
-}  // namespace tools
+}  // namespace verification

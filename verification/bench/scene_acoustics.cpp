@@ -6,7 +6,7 @@
 
 #include "verification/bench/talkers.hpp"
 
-namespace tools {
+namespace verification {
 
 namespace {
 
@@ -54,4 +54,4 @@ BenchScene acoustics_rays_scene() {
           make_talkers};
 }
 
-}  // namespace tools
+}  // namespace verification

@@ -10,7 +10,7 @@
 #include "sim/random/random.hpp"
 #include "verification/bench/rover_arena.hpp"
 
-namespace tools {
+namespace verification {
 
 namespace {
 
@@ -83,4 +83,4 @@ BenchScene crowd_scene() {
           }};
 }
 
-}  // namespace tools
+}  // namespace verification

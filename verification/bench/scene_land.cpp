@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "verification/bench/rover_arena.hpp"
 
-namespace tools {
+namespace verification {
 
 std::string land_scene_text(int robots, bool one_entry_each) {
   // The lidar is at the front of the hull, 0.14 m above the ground, and so sees the hulls of others.
@@ -16,4 +16,4 @@ BenchScene land_scene() {
           wanderers};
 }
 
-}  // namespace tools
+}  // namespace verification

@@ -9,7 +9,7 @@
 #include "verification/bench/rover_arena.hpp"
 #include "verification/bench/talkers.hpp"
 
-namespace tools {
+namespace verification {
 
 namespace {
 
@@ -102,4 +102,4 @@ BenchScene mixed_scene() {
           }};
 }
 
-}  // namespace tools
+}  // namespace verification

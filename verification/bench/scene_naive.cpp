@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "verification/bench/marine_helpers.hpp"
 
-namespace tools {
+namespace verification {
 
 BenchScene naive_scene() {
   return {"naive",
@@ -18,4 +18,4 @@ BenchScene naive_scene() {
           nullptr};
 }
 
-}  // namespace tools
+}  // namespace verification

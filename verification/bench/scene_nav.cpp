@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "verification/bench/marine_helpers.hpp"
 
-namespace tools {
+namespace verification {
 
 BenchScene nav_scene() {
   return {"nav",
@@ -18,4 +18,4 @@ BenchScene nav_scene() {
           }};
 }
 
-}  // namespace tools
+}  // namespace verification

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "verification/bench/marine_helpers.hpp"
 
-namespace tools {
+namespace verification {
 
 BenchScene otters_scene() {
   return {"otters",
@@ -17,4 +17,4 @@ BenchScene otters_scene() {
           }};
 }
 
-}  // namespace tools
+}  // namespace verification

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "verification/bench/rover_arena.hpp"
 
-namespace tools {
+namespace verification {
 
 /// For comparison with figures of before `land`.
 BenchScene scale_scene() {
@@ -14,4 +14,4 @@ BenchScene scale_scene() {
           wanderers};
 }
 
-}  // namespace tools
+}  // namespace verification

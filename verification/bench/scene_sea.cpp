@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "verification/bench/marine_helpers.hpp"
 
-namespace tools {
+namespace verification {
 
 BenchScene sea_scene() {
   return {"sea",
@@ -15,4 +15,4 @@ BenchScene sea_scene() {
           }};
 }
 
-}  // namespace tools
+}  // namespace verification

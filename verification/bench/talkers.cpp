@@ -4,7 +4,7 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/modem_send_t.hpp"
 
-namespace tools {
+namespace verification {
 
 Talkers::Talkers(const sim::World& world, sim::Bus& bus) : bus_(bus) {
   for (const auto& vehicle : world.vehicles())
@@ -23,4 +23,4 @@ void Talkers::think(sim::Time now) {
     bus_.publish(channels_[static_cast<std::size_t>(next_++ % count)], payload_, now);
 }
 
-}  // namespace tools
+}  // namespace verification

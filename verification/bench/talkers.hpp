@@ -6,7 +6,7 @@
 
 #include "verification/bench/bench_scene.hpp"
 
-namespace tools {
+namespace verification {
 
 /// Sends 32 bytes by the acoustic modem of each vehicle that has one, every 10 s; of N modems number k at k / N of the
 /// period, so that messages overlap at the receivers.
@@ -22,4 +22,4 @@ class Talkers final : public ScenePrograms {
   std::int64_t next_ = 0;  ///< number of the next message
 };
 
-}  // namespace tools
+}  // namespace verification

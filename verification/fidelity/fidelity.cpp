@@ -16,7 +16,7 @@
 #include "sim/world/world_editor.hpp"
 #include "sim/world_file/load_world.hpp"
 
-namespace tools {
+namespace verification {
 
 namespace {
 
@@ -315,4 +315,4 @@ FidelityResult run_fidelity_case(const FidelityCase& of, const FidelityOptions& 
   }
 }
 
-}  // namespace tools
+}  // namespace verification

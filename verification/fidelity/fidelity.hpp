@@ -10,7 +10,7 @@
 
 #include "sim/config/param_reader.hpp"
 
-namespace tools {
+namespace verification {
 
 /// One degree in rad.
 inline constexpr double degree_rad = std::numbers::pi / 180;
@@ -114,4 +114,4 @@ sim::ConfigNode fidelity_world(const FidelityCase& of, const FidelityReference& 
 /// bus; row k applies from its time to that of row k + 1.  Throws ConfigError, which names the case, and PhysicsFault.
 FidelityResult run_fidelity_case(const FidelityCase& of, const FidelityOptions& options = {});
 
-}  // namespace tools
+}  // namespace verification

@@ -3,7 +3,7 @@
 
 #include "verification/fidelity/fidelity.hpp"
 
-namespace tools {
+namespace verification {
 
 namespace {
 
@@ -158,4 +158,4 @@ FidelityFile read_fidelity_file(const std::string& path) {
   return result;
 }
 
-}  // namespace tools
+}  // namespace verification

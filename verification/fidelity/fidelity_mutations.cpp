@@ -15,7 +15,7 @@
 #include "sim/ode/physics_fault.hpp"
 #include "sim/world_file/load_world.hpp"
 
-namespace tools {
+namespace verification {
 
 namespace {
 
@@ -258,4 +258,4 @@ std::string fidelity_mutations_page(const std::vector<FidelityMutation>& mutatio
          tables;
 }
 
-}  // namespace tools
+}  // namespace verification

@@ -9,7 +9,7 @@
 
 #include "verification/fidelity/fidelity.hpp"
 
-namespace tools {
+namespace verification {
 
 /// A number in the `hydrodynamics:` or in an actuator of a vehicle file.
 struct FidelityCoefficient {
@@ -62,4 +62,4 @@ std::vector<FidelityMutation> mutate_fidelity(const FidelityFile& file, double s
 std::string fidelity_mutations_page(const std::vector<FidelityMutation>& mutations, double share,
                                     const std::string& cases);
 
-}  // namespace tools
+}  // namespace verification

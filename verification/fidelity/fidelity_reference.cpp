@@ -8,7 +8,7 @@
 #include "sim/config/message_text.hpp"
 #include "verification/fidelity/fidelity.hpp"
 
-namespace tools {
+namespace verification {
 
 namespace {
 
@@ -99,4 +99,4 @@ FidelityReference read_fidelity_reference(const std::string& path) {
   return reference;
 }
 
-}  // namespace tools
+}  // namespace verification

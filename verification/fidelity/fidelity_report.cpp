@@ -12,7 +12,7 @@
 #include "experiment/files/gnuplot.hpp"
 #include "experiment/files/scratch_directory.hpp"
 
-namespace tools {
+namespace verification {
 
 namespace {
 
@@ -77,17 +77,17 @@ std::string digits(double value) {
 }
 
 void plot(const std::filesystem::path& image, const FidelityResult& result) {
-  const ScratchDirectory scratch;
+  const experiment::ScratchDirectory scratch;
   // Data and script of the plot.
   write(scratch.path / "theirs", rows_of(result, result.theirs, ' ', true));
   write(scratch.path / "ours", rows_of(result, result.ours, ' ', true));
   write(scratch.path / "plot.gp",
         "set terminal pngcairo size 840,440 font ',8'\nset output " +
-            gnuplot_text(std::filesystem::absolute(image).string()) +
+            experiment::gnuplot_text(std::filesystem::absolute(image).string()) +
             "\nset key samplen 1 spacing 0.9\nset multiplot layout 2,3 title " +
-            gnuplot_text(result.of.name + ": reference grey, ours colored") + " noenhanced\nset xlabel 'east (m)'\n" +
-            "set ylabel 'north (m)'\nset size ratio -1\n" + fmt::format("set xtics {:g}\n", tics_of(result)) +
-            panel("track", "3", {{"2", ""}}) +
+            experiment::gnuplot_text(result.of.name + ": reference grey, ours colored") +
+            " noenhanced\nset xlabel 'east (m)'\n" + "set ylabel 'north (m)'\nset size ratio -1\n" +
+            fmt::format("set xtics {:g}\n", tics_of(result)) + panel("track", "3", {{"2", ""}}) +
             "set size noratio\nset xtics autofreq\nset xlabel 't (s)'\nset ylabel 'm'\nset yrange [] reverse\n" +
             panel("depth", "1", {{"4", ""}}) + "set yrange [] noreverse\nset ylabel 'deg'\n" +
             panel("attitude", "1", {{"5", "roll"}, {"6", "pitch"}, {"7", "yaw"}}) + "set ylabel 'm/s'\n" +
@@ -95,7 +95,7 @@ void plot(const std::filesystem::path& image, const FidelityResult& result) {
             "set ylabel 'deg/s'\n" + panel("turn rates", "1", {{"11", "p"}, {"12", "q"}, {"13", "r"}}) +
             "unset multiplot\n");
   // Run gnuplot.
-  if (!run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(60), [] { return false; })) {
+  if (!experiment::run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(60), [] { return false; })) {
     std::ifstream log(scratch.path / "plot.log");
     std::string line;
     std::getline(log, line);
@@ -178,4 +178,4 @@ void write_fidelity_mutations(const std::string& folder, const std::string& page
   write(std::filesystem::path(folder) / "fidelity_coefficients.md", page);
 }
 
-}  // namespace tools
+}  // namespace verification

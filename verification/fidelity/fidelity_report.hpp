@@ -6,7 +6,7 @@
 
 #include "verification/fidelity/fidelity.hpp"
 
-namespace tools {
+namespace verification {
 
 /// Returns the table of differences, aligned for a terminal and valid as Markdown.
 std::string fidelity_table(const std::vector<FidelityResult>& results);
@@ -23,4 +23,4 @@ void write_fidelity_report(const std::string& folder, const std::string& text,
 /// Writes FOLDER/fidelity_coefficients.md.  Throws std::runtime_error.
 void write_fidelity_mutations(const std::string& folder, const std::string& page);
 
-}  // namespace tools
+}  // namespace verification

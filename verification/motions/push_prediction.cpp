@@ -8,7 +8,7 @@
 
 #include "motion/analysis/motion_tracking.hpp"
 
-namespace tools {
+namespace verification {
 
 namespace {
 
@@ -18,13 +18,13 @@ constexpr double hold_s = 0.5;               // of a held pose
 constexpr double fallen_displacement_m = 1;  // displacement of a pose that falls
 
 /// Plays a motion to its end and some time more.  Returns whether it has fallen.
-bool falls_by_itself(MotionStage& stage, double watch_s) {
-  MotionTracking tracking;
+bool falls_by_itself(motion::MotionStage& stage, double watch_s) {
+  motion::MotionTracking tracking;
   bool touched = false;
   stage.world().physics().watch_contacts(stage.vehicle().group());
-  stage.after_step = [&](MotionStage& now) {
+  stage.after_step = [&](motion::MotionStage& now) {
     tracking.add(now);
-    touched = touched || first_body_touches(now.world(), now.vehicle());
+    touched = touched || motion::first_body_touches(now.world(), now.vehicle());
   };
   stage.play_out(watch_s, longest_play_s);
   stage.after_step = {};
@@ -42,44 +42,46 @@ sim::JointMotion held_pose(const sim::JointMotion& motion, double at_s) {
 }
 
 /// Returns the greatest displacement after a push of a pose that is held, over all directions, m.
-double static_displacement_m(const StageOptions& options, const sim::JointMotion& pose, const PushOptions& push) {
-  MotionStage stage(options, pose);
+double static_displacement_m(const motion::StageOptions& options, const sim::JointMotion& pose,
+                             const motion::PushOptions& push) {
+  motion::MotionStage stage(options, pose);
   if (falls_by_itself(stage, hold_s)) return fallen_displacement_m;
   // The first push is none, for comparison.
-  std::vector<Push> pushes(1, {stage.now_s(), 0, 0});
+  std::vector<motion::Push> pushes(1, {stage.now_s(), 0, 0});
   for (int i = 0; i < push.directions; ++i)
     pushes.push_back({stage.now_s(), two_pi * i / push.directions, push.settle_mps});
-  const std::vector<PushOutcome> outcomes = outcomes_of(stage, pushes, push);
+  const std::vector<motion::PushOutcome> outcomes = motion::outcomes_of(stage, pushes, push);
   double greatest_m = 0;
-  for (const PushOutcome& outcome : outcomes)
+  for (const motion::PushOutcome& outcome : outcomes)
     greatest_m = std::max(greatest_m, outcome.fell ? fallen_displacement_m : outcome.distance_m(outcomes.front()));
   return greatest_m;
 }
 
 /// Draws the pushes of a motion between two times of the run, by time.
-std::vector<Push> drawn_pushes(const PredictionOptions& options, double from_s, sim::Random& random) {
+std::vector<motion::Push> drawn_pushes(const PredictionOptions& options, double from_s, sim::Random& random) {
   // Within the chord of two directions that both withstand the greatest push.
   const double greatest_mps = options.push.greatest_mps * std::cos(std::numbers::pi / options.push.directions);
-  std::vector<Push> pushes(static_cast<std::size_t>(options.pushes));
-  for (Push& push : pushes) {
+  std::vector<motion::Push> pushes(static_cast<std::size_t>(options.pushes));
+  for (motion::Push& push : pushes) {
     push.at_s = from_s + options.row_s * random.uniform();
     push.direction_rad = two_pi * random.uniform();
     push.mps = greatest_mps * random.uniform();
   }
-  std::sort(pushes.begin(), pushes.end(), [](const Push& a, const Push& b) { return a.at_s < b.at_s; });
+  std::sort(pushes.begin(), pushes.end(), [](const motion::Push& a, const motion::Push& b) { return a.at_s < b.at_s; });
   return pushes;
 }
 
 /// Adds the trials of a motion.  Returns false when it falls by itself.
-bool add_trials(const StageOptions& stage_options, const sim::JointMotion& motion, const PredictionOptions& options,
-                int number, sim::Random& random, std::vector<PushTrial>& trials) {
-  MotionStage stage(stage_options, motion);
+bool add_trials(const motion::StageOptions& stage_options, const sim::JointMotion& motion,
+                const PredictionOptions& options, int number, sim::Random& random, std::vector<PushTrial>& trials) {
+  motion::MotionStage stage(stage_options, motion);
   if (falls_by_itself(stage, options.push.watch_s)) return false;
   const double motion_s = random.uniform() * std::max(0.0, motion.end_s() - options.row_s);
   const double from_s = stage.time_of(motion_s);
-  const std::vector<PushMargin> margins = push_margins(stage, {from_s, from_s + options.row_s}, options.push);
-  const std::vector<Push> pushes = drawn_pushes(options, from_s, random);
-  const std::vector<PushOutcome> outcomes = outcomes_of(stage, pushes, options.push);
+  const std::vector<motion::PushMargin> margins =
+      motion::push_margins(stage, {from_s, from_s + options.row_s}, options.push);
+  const std::vector<motion::Push> pushes = drawn_pushes(options, from_s, random);
+  const std::vector<motion::PushOutcome> outcomes = motion::outcomes_of(stage, pushes, options.push);
   const double displacement_m = static_displacement_m(stage_options, held_pose(motion, motion_s), options.push);
   for (std::size_t i = 0; i < pushes.size(); ++i) {
     const double share = (pushes[i].at_s - from_s) / options.row_s;
@@ -92,7 +94,7 @@ bool add_trials(const StageOptions& stage_options, const sim::JointMotion& motio
 
 }  // namespace
 
-double margin_at(const PushMargin& margin, double direction_rad) {
+double margin_at(const motion::PushMargin& margin, double direction_rad) {
   const std::size_t count = margin.withstood_mps.size();
   const double sector_rad = two_pi / static_cast<double>(count);
   const double turned_rad = direction_rad - two_pi * std::floor(direction_rad / two_pi);
@@ -105,7 +107,7 @@ double margin_at(const PushMargin& margin, double direction_rad) {
   return std::sin(sector_rad) / (std::sin(sector_rad - from_a_rad) / a_mps + std::sin(from_a_rad) / b_mps);
 }
 
-PushTrials push_trials(const StageOptions& stage, const sim::VehicleConfig& vehicle,
+PushTrials push_trials(const motion::StageOptions& stage, const sim::VehicleConfig& vehicle,
                        const std::vector<sim::MotionPose>& poses, const PredictionOptions& options) {
   PushTrials result;
   sim::Random random(options.seed, "push_prediction");
@@ -151,4 +153,4 @@ Detection detection_by_static_check(const std::vector<PushTrial>& trials, bool b
   return best;
 }
 
-}  // namespace tools
+}  // namespace verification

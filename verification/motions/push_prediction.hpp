@@ -7,7 +7,7 @@
 #include "motion/analysis/push_trials.hpp"
 #include "verification/motions/random_motion.hpp"
 
-namespace tools {
+namespace verification {
 
 /// How the push margin is tested as a prediction of falls.
 struct PredictionOptions {
@@ -17,13 +17,13 @@ struct PredictionOptions {
       0.2;  ///< time between the two instants of a motion whose margins are measured; pushes are between them
   std::uint64_t seed = 1;
   RandomMotionOptions motion;
-  PushOptions push;
+  motion::PushOptions push;
 };
 
 /// A push at a random time, in a random direction and of a random strength, and what was predicted of it.
 struct PushTrial {
   int motion = 0;  ///< number, from 1
-  Push push;
+  motion::Push push;
   bool fell = false;
   double withstood_mps = 0;          ///< predicted: greatest impulse over mass that does not make it fall; margin_at()
   double static_displacement_m = 0;  ///< greatest one in a static check of the pose, without the motion
@@ -38,11 +38,11 @@ struct PushTrials {
 /// Returns the impulse over mass that is withstood in a direction, rad, from those in the directions of a margin.
 ///
 /// Between two directions the bound is a straight line in the plane of impulses, as when the vehicle tips over an edge.
-double margin_at(const PushMargin& margin, double direction_rad);
+double margin_at(const motion::PushMargin& margin, double direction_rad);
 
 /// Draws motions from poses, measures margins of each at two instants, and pushes it between them.  The pushes are
 /// drawn apart from those of the margins.  `stage.world` is a world file.
-PushTrials push_trials(const StageOptions& stage, const sim::VehicleConfig& vehicle,
+PushTrials push_trials(const motion::StageOptions& stage, const sim::VehicleConfig& vehicle,
                        const std::vector<sim::MotionPose>& poses, const PredictionOptions& options);
 
 /// How well a prediction of falls does.
@@ -60,4 +60,4 @@ Detection detection_by_margin(const std::vector<PushTrial>& trials);
 /// `by_push`, is above a threshold.  The threshold is the one of the best F1 over the trials themselves.
 Detection detection_by_static_check(const std::vector<PushTrial>& trials, bool by_push);
 
-}  // namespace tools
+}  // namespace verification

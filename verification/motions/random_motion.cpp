@@ -8,7 +8,7 @@
 #include "devices/motion/servo_bank.hpp"
 #include "motion/analysis/motion_check.hpp"
 
-namespace tools {
+namespace verification {
 
 namespace {
 
@@ -50,7 +50,7 @@ sim::JointMotion random_motion(const std::vector<sim::MotionPose>& poses, const 
     for (const devices::ServoOfVehicle& servo : others)
       key.joints.emplace_back(servo.device, drawn_between(servo.low, servo.high, random));
   }
-  return mended(motion, vehicle);
+  return motion::mended(motion, vehicle);
 }
 
-}  // namespace tools
+}  // namespace verification

@@ -7,7 +7,7 @@
 #include "sim/random/random.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 
-namespace tools {
+namespace verification {
 
 /// How motions are drawn.
 struct RandomMotionOptions {
@@ -21,4 +21,4 @@ struct RandomMotionOptions {
 sim::JointMotion random_motion(const std::vector<sim::MotionPose>& poses, const sim::VehicleConfig& vehicle,
                                const RandomMotionOptions& options, sim::Random& random);
 
-}  // namespace tools
+}  // namespace verification

@@ -10,11 +10,11 @@
 #include "motion/analysis/perturbed_world.hpp"
 #include "sim/base/thread_pool.hpp"
 
-namespace tools {
+namespace verification {
 
 namespace {
 
-constexpr double rad_per_deg = std::numbers::pi / 180;
+constexpr double motion::rad_per_deg = std::numbers::pi / 180;
 /// Endings of the servos of a leg.
 constexpr const char* leg_joints[] = {"_swing", "_flap", "_knee"};
 
@@ -39,14 +39,15 @@ std::vector<RealWalk> fast_forward_turns() {
   const double deg[][2] = {{5, 22.3512},  {10, 43.4592}, {15, 59.1784}, {20, 69.4455},
                            {25, 78.8782}, {30, 88.8216}, {35, 91.5167}};
   std::vector<RealWalk> walks;
-  for (const auto& [turn, speed] : deg) walks.push_back({{.turn_rad = turn * rad_per_deg}, speed * rad_per_deg});
+  for (const auto& [turn, speed] : deg)
+    walks.push_back({{.turn_rad = turn * motion::rad_per_deg}, speed * motion::rad_per_deg});
   return walks;
 }
 
 sim::WorldConfig with_parameters(sim::WorldConfig world, const std::string& vehicle, const DogParameters& parameters) {
-  Perturbation perturbation;
+  motion::Perturbation perturbation;
   perturbation.friction = parameters.friction;
-  world = perturbed(std::move(world), vehicle, perturbation);
+  world = motion::perturbed(std::move(world), vehicle, perturbation);
   for (sim::VehicleInstance& instance : world.vehicles) {
     if (instance.name != vehicle) continue;
     sim::VehicleConfig changed = *instance.config;
@@ -68,16 +69,17 @@ sim::WorldConfig with_parameters(sim::WorldConfig world, const std::string& vehi
 }
 
 std::vector<double> simulated_speeds(const sim::WorldConfig& world, const std::string& vehicle,
-                                     std::span<const RealWalk> walks, const WalkOptions& options, int threads) {
-  const sim::WorldConfig reduced = world_for_walks(world);
+                                     std::span<const RealWalk> walks, const motion::WalkOptions& options, int threads) {
+  const sim::WorldConfig reduced = motion::world_for_walks(world);
   const auto instance = std::find_if(reduced.vehicles.begin(), reduced.vehicles.end(),
                                      [&](const sim::VehicleInstance& one) { return one.name == vehicle; });
-  const Skelliptical gait(*instance->config);
-  const std::vector<double> numbers = Skelliptical::fast_forward();
+  const motion::Skelliptical gait(*instance->config);
+  const std::vector<double> numbers = motion::Skelliptical::fast_forward();
   std::vector<double> speeds(walks.size());
   sim::ThreadPool(threads).for_each(walks.size(), [&](std::size_t i) {
-    const GaitStep& step = walks[i].step;
-    const Walk walk = measured_walk(reduced, vehicle, gait.motion(numbers, step, CourseLimit::range), options);
+    const motion::GaitStep& step = walks[i].step;
+    const motion::Walk walk =
+        motion::measured_walk(reduced, vehicle, gait.motion(numbers, step, motion::CourseLimit::range), options);
     if (!walk.fell) speeds[i] = step.turn_rad != 0 ? walk.turn_radps : walk.ahead_mps;
   });
   return speeds;
@@ -95,4 +97,4 @@ double relative_rms(std::span<const RealWalk> walks, std::span<const double> sim
   return count == 0 ? 0 : std::sqrt(sum2 / count);
 }
 
-}  // namespace tools
+}  // namespace verification

@@ -10,11 +10,11 @@
 #include "motion/gait/skelliptical.hpp"
 #include "sim/world_file/world_config.hpp"
 
-namespace tools {
+namespace verification {
 
 /// Walk of a real robot, measured.
 struct RealWalk {
-  GaitStep step;           ///< commanded, of half a period
+  motion::GaitStep step;   ///< commanded, of half a period
   double measured = 0;     ///< speed, m/s; of a turn rad/s
   bool is_fitted = false;  ///< parameters of the model may be fitted to it
 };
@@ -41,9 +41,9 @@ sim::WorldConfig with_parameters(sim::WorldConfig world, const std::string& vehi
 /// Returns the simulated speeds of walks, m/s or rad/s; 0 of one that falls.  Commands are limited to the ranges of the
 /// joints only, as on the dog.
 std::vector<double> simulated_speeds(const sim::WorldConfig& world, const std::string& vehicle,
-                                     std::span<const RealWalk> walks, const WalkOptions& options, int threads);
+                                     std::span<const RealWalk> walks, const motion::WalkOptions& options, int threads);
 
 /// Returns the root of the mean squared relative error of simulated speeds.  `only_fitted`: of the fitted walks.
 double relative_rms(std::span<const RealWalk> walks, std::span<const double> simulated, bool only_fitted);
 
-}  // namespace tools
+}  // namespace verification

@@ -8,7 +8,7 @@
 #include "motion/gait/leg.hpp"
 #include "sim/random/random.hpp"
 
-namespace tools {
+namespace verification {
 
 namespace {
 
@@ -20,12 +20,12 @@ constexpr int max_tried_per_pose = 100;
 }  // namespace
 
 StandingPoses standing_poses(const sim::WorldConfig& world, const std::string& vehicle, int count, std::uint64_t seed) {
-  const sim::WorldConfig reduced = world_for_walks(world);
+  const sim::WorldConfig reduced = motion::world_for_walks(world);
   const auto instance = std::find_if(reduced.vehicles.begin(), reduced.vehicles.end(),
                                      [&](const sim::VehicleInstance& one) { return one.name == vehicle; });
-  const std::vector<Leg> legs = legs_of(*instance->config);
+  const std::vector<motion::Leg> legs = motion::legs_of(*instance->config);
   sim::Random random(seed, "standing_poses");
-  const auto drawn = [&](const LegJointLimits& limits, double low, double high) {
+  const auto drawn = [&](const motion::LegJointLimits& limits, double low, double high) {
     return std::clamp(low + random.uniform() * (high - low), limits.low, limits.high);
   };
   StandingPoses result;
@@ -34,15 +34,15 @@ StandingPoses standing_poses(const sim::WorldConfig& world, const std::string& v
       throw std::runtime_error("vehicle '" + vehicle + "' stands in too few of its random poses");
     random.begin_step(result.tried++);
     sim::JointValues pose;
-    for (const Leg& leg : legs) {
+    for (const motion::Leg& leg : legs) {
       pose.emplace_back(leg.name + "_swing", drawn(leg.swing_limits, -max_swing_rad, max_swing_rad));
       pose.emplace_back(leg.name + "_flap", drawn(leg.flap_limits, 0, max_flap_rad));
       pose.emplace_back(leg.name + "_knee", drawn(leg.knee_limits, 0, max_knee_rad));
     }
-    const ConnectWorld trial(reduced, vehicle, held_pose("pose", vehicle, pose), pose_settle_s);
+    const motion::ConnectWorld trial(reduced, vehicle, held_pose("pose", vehicle, pose), pose_settle_s);
     if (trial.stands() && !trial.touches()) result.poses.push_back(pose);
   }
   return result;
 }
 
-}  // namespace tools
+}  // namespace verification

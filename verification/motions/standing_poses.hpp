@@ -7,7 +7,7 @@
 
 #include "motion/analysis/connect.hpp"
 
-namespace tools {
+namespace verification {
 
 /// Random poses in which a vehicle stands.
 struct StandingPoses {
@@ -20,4 +20,4 @@ struct StandingPoses {
 /// Throws ConfigError when it has not the legs for it.
 StandingPoses standing_poses(const sim::WorldConfig& world, const std::string& vehicle, int count, std::uint64_t seed);
 
-}  // namespace tools
+}  // namespace verification

@@ -7,7 +7,7 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -67,4 +67,4 @@ const LogEstimate* LogEstimates::find(const std::string& vehicle, double time_s,
   return &*(after - 1);
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -9,7 +9,7 @@
 
 #include "viewer/estimates/vehicle_estimate.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Position estimate in a log.
 struct LogEstimate : VehicleEstimate {
@@ -35,4 +35,4 @@ class LogEstimates {
   std::map<std::string, std::vector<LogEstimate>, std::less<>> by_vehicle_;
 };
 
-}  // namespace tools
+}  // namespace viewer

@@ -7,7 +7,7 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/pose_t.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -40,4 +40,4 @@ std::optional<VehicleEstimate> read_estimate(std::string_view channel, std::span
   return estimate;
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -9,7 +9,7 @@
 
 #include "sim/base/math.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Where a vehicle believes to be, by a message of one of its programs.
 struct VehicleEstimate {
@@ -24,4 +24,4 @@ struct VehicleEstimate {
 /// shoal::MessageError when the message is damaged.
 std::optional<VehicleEstimate> read_estimate(std::string_view channel, std::span<const std::byte> payload);
 
-}  // namespace tools
+}  // namespace viewer

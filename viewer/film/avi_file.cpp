@@ -12,7 +12,7 @@
 #include "experiment/files/no_links.hpp"
 #include "sim/image/image_file.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -115,4 +115,4 @@ void AviFile::finish() {
   out_ = nullptr;
 }
 
-}  // namespace tools
+}  // namespace viewer

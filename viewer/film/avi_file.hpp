@@ -9,7 +9,7 @@
 
 #include "viewer/film/film_writer.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Writer of AVI files (RIFF, version 1) with Motion JPEG, which most players show.
 class AviFile final : public FilmWriter {
@@ -39,4 +39,4 @@ class AviFile final : public FilmWriter {
   sim::Bytes jpeg_;
 };
 
-}  // namespace tools
+}  // namespace viewer

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer/film/background_writer.hpp"
 
-namespace tools {
+namespace viewer {
 
 BackgroundWriter::BackgroundWriter(std::unique_ptr<FilmWriter> writer)
     : writer_(std::move(writer)), thread_([this] { write(); }) {}
@@ -61,4 +61,4 @@ void BackgroundWriter::finish() {
   writer_->finish();
 }
 
-}  // namespace tools
+}  // namespace viewer

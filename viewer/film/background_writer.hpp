@@ -10,7 +10,7 @@
 
 #include "viewer/film/film_writer.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Writer that encodes in its own thread, while the next frame is rendered.  An error of the other writer is
 /// thrown by the next call.
@@ -39,4 +39,4 @@ class BackgroundWriter final : public FilmWriter {
   std::thread thread_;
 };
 
-}  // namespace tools
+}  // namespace viewer

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace tools {
+namespace viewer {
 
 void CameraKey::read(sim::ParamReader& in) {
   in.require("at_s");
@@ -64,4 +64,4 @@ CameraPath read_camera_path(const std::string& file) {
   return path;
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -7,7 +7,7 @@
 #include "sim/base/math.hpp"
 #include "sim/config/param_reader.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Camera of a film at one time.
 struct CameraKey {
@@ -32,4 +32,4 @@ struct CameraPath {
 /// Reads a file of a camera path.  Throws sim::ConfigError with the place of each mistake.
 CameraPath read_camera_path(const std::string& file);
 
-}  // namespace tools
+}  // namespace viewer

@@ -13,7 +13,7 @@
 #include "viewer/film/camera_path.hpp"
 #include "viewer/images/overview.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -259,4 +259,4 @@ std::unique_ptr<CameraRig> make_camera_rig(const std::string& text, const sim::W
                     "*.yaml");
 }
 
-}  // namespace tools
+}  // namespace viewer

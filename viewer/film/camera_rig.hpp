@@ -8,7 +8,7 @@
 #include "sim/world/world.hpp"
 #include "viewer/film/scene_painter.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Camera that cannot be used with a world.  what() says why, and what there is.
 class CameraError : public std::runtime_error {
@@ -39,4 +39,4 @@ SceneView view_of_camera(const sim::World& world, const std::string& name);
 /// Returns the name of the first camera of a vehicle, or of the world when `vehicle` is empty; empty: there is none.
 std::string first_camera(const sim::World& world, const std::string& vehicle);
 
-}  // namespace tools
+}  // namespace viewer

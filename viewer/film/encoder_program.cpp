@@ -18,7 +18,7 @@
 #include "experiment/process/child_program.hpp"
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -64,8 +64,9 @@ EncoderProgram::EncoderProgram(std::string file, const FilmFormat& format, const
   const bridges::FileDescriptor read_end(ends[0]);
   input_ = bridges::FileDescriptor(ends[1]);
   fcntl(ends[1], F_SETPIPE_SZ, 1 << 20);  // fewer switches between the programs
-  ChildProgram program{"ffmpeg", arguments_of(format, codec, part_), own_environment(), log_, read_end.number()};
-  const int error = start_child(program, pid_);
+  experiment::ChildProgram program{"ffmpeg", arguments_of(format, codec, part_), experiment::own_environment(), log_,
+                                   read_end.number()};
+  const int error = experiment::start_child(program, pid_);
   if (error == 0) return;
   unlink(part_.c_str());
   unlink(log_.c_str());
@@ -130,4 +131,4 @@ void EncoderProgram::finish() {
   throw FilmError(file_ + ": cannot be written: " + reason);
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -9,7 +9,7 @@
 #include "bridges/base/file_descriptor.hpp"
 #include "viewer/film/film_writer.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Film that the program `ffmpeg` encodes: raw frames go to its standard input.
 class EncoderProgram final : public FilmWriter {
@@ -37,4 +37,4 @@ class EncoderProgram final : public FilmWriter {
 /// Returns whether the program `ffmpeg` is in PATH.
 bool has_ffmpeg();
 
-}  // namespace tools
+}  // namespace viewer

@@ -18,7 +18,7 @@
 #include "viewer/film/ping_observer.hpp"
 #include "viewer/film/scene_painter.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -88,7 +88,7 @@ class Film {
     const std::int64_t frames = frame_count();
     BackgroundWriter writer(make_film_writer(options_.out, options_.format));
     FilmProgress progress(options_.quiet);
-    for (std::int64_t i = 0; i < frames && caught_signal() == 0; ++i) {
+    for (std::int64_t i = 0; i < frames && experiment::caught_signal() == 0; ++i) {
       if (!advance(options_.from_s + static_cast<double>(i) * step_s())) {
         outcome_.note = fmt::format("the run ends at {:.3f} s", sim::to_seconds(world_.now()));
         break;
@@ -98,7 +98,7 @@ class Film {
       progress.update(i + 1, frames, sim::to_seconds(world_.now()));
     }
     progress.clear();
-    outcome_.interrupted = caught_signal() != 0;
+    outcome_.interrupted = experiment::caught_signal() != 0;
     if (outcome_.interrupted) return outcome_;
     writer.finish();
     outcome_.wall_s = seconds_since(start);
@@ -156,7 +156,7 @@ class Film {
   /// Runs to a time; trails have a point at each tenth of a frame, at most.
   bool advance(double to_s) {
     const sim::Time time = sim::from_seconds(to_s);
-    while (world_.now() < time && caught_signal() == 0) {
+    while (world_.now() < time && experiment::caught_signal() == 0) {
       if (!source_->step()) return false;
       const double now_s = sim::to_seconds(world_.now());
       if (now_s > options_.from_s - LaserScans::kept_s) overlay_.observe_scans();
@@ -230,4 +230,4 @@ FilmOutcome make_film(const FilmOptions& options) {
   return std::make_unique<Film>(options)->run();
 }
 
-}  // namespace tools
+}  // namespace viewer

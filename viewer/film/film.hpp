@@ -11,7 +11,7 @@
 #include "viewer/film/overlay.hpp"
 #include "viewer/film/scene_painter.hpp"
 
-namespace tools {
+namespace viewer {
 
 struct FilmOptions {
   std::string source;  ///< a log of `shoal run --record`, or a world
@@ -51,4 +51,4 @@ Overlay::Settings film_overlay(const FilmOptions& options);
 /// std::runtime_error (files), sim::PhysicsFault.
 FilmOutcome make_film(const FilmOptions& options);
 
-}  // namespace tools
+}  // namespace viewer

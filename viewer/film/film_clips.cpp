@@ -22,7 +22,7 @@
 #include "viewer/film/film_source.hpp"
 #include "viewer/film/ping_observer.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -150,7 +150,7 @@ class Clips {
       if (open_.empty()) frame = std::max(frame, static_cast<std::int64_t>(std::floor(clips_[next].from_s / step_s)));
       const double now_s = static_cast<double>(frame) * step_s;
       const bool goes_on = advance(now_s, step_s);
-      if (caught_signal() != 0) break;
+      if (experiment::caught_signal() != 0) break;
       for (; next < clips_.size() && clips_[next].from_s < now_s + step_s; ++next)
         open_.push_back(std::make_unique<OpenClip>(clips_[next], world_, like_, film_.format));
       for (const auto& clip : open_) {
@@ -160,7 +160,7 @@ class Clips {
       close(now_s + step_s, !goes_on, outcome);
       if (!goes_on) break;
     }
-    outcome.interrupted = caught_signal() != 0;
+    outcome.interrupted = experiment::caught_signal() != 0;
   }
 
  private:
@@ -172,7 +172,7 @@ class Clips {
   /// Runs to a time, with points for the trails.  Returns false at the end of the log.
   bool advance(double to_s, double step_s) {
     const sim::Time time = sim::from_seconds(to_s);
-    while (world_.now() < time && caught_signal() == 0) {
+    while (world_.now() < time && experiment::caught_signal() == 0) {
       if (!source_->step()) return false;
       const double now_s = sim::to_seconds(world_.now());
       overlay_.observe_scans();
@@ -273,4 +273,4 @@ std::string ClipOutcome::to_text() const {
   return text;
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -7,7 +7,7 @@
 
 #include "viewer/film/film.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Part of a run around an event.
 struct Clip {
@@ -47,4 +47,4 @@ std::vector<Clip> find_clips(const std::string& log, const ClipOptions& options,
 /// used.  Throws as make_film() and find_clips() do.
 ClipOutcome make_clips(const FilmOptions& film, const ClipOptions& options);
 
-}  // namespace tools
+}  // namespace viewer

@@ -11,7 +11,7 @@
 #include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -40,7 +40,9 @@ class WorldSource final : public FilmSource {
 /// World of a log.
 class LogSource final : public FilmSource {
  public:
-  explicit LogSource(const std::string& path) : log_(read_replay_log(path)), replayed_(log_, {}) { replayed_.start(); }
+  explicit LogSource(const std::string& path) : log_(experiment::read_replay_log(path)), replayed_(log_, {}) {
+    replayed_.start();
+  }
 
   sim::World& world() override { return replayed_.world(); }
   bool step() override {
@@ -54,8 +56,8 @@ class LogSource final : public FilmSource {
   const std::string& log() const override { return log_.path; }
 
  private:
-  ReplayLog log_;
-  ReplayedWorld replayed_;
+  experiment::ReplayLog log_;
+  experiment::ReplayedWorld replayed_;
 };
 
 }  // namespace
@@ -81,7 +83,7 @@ std::unique_ptr<FilmSource> open_film_source(const std::string& log_or_world, co
   }
   sim::LoadOptions options = load;
   options.encode_message = shoal::encode_own_message;
-  return std::make_unique<WorldSource>(sim::load_world(world_file(log_or_world), options));
+  return std::make_unique<WorldSource>(sim::load_world(experiment::world_file(log_or_world), options));
 }
 
-}  // namespace tools
+}  // namespace viewer

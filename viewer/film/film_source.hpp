@@ -7,7 +7,7 @@
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Run to be shown in images: a world that is run without programs, or the world of a log, which is run again with
 /// the inputs that it recorded.  Neither is changed by being shown.
@@ -35,4 +35,4 @@ bool is_event_log(const std::string& path);
 /// the log cannot be replayed, or seed or settings are given for it.
 std::unique_ptr<FilmSource> open_film_source(const std::string& log_or_world, const sim::LoadOptions& load);
 
-}  // namespace tools
+}  // namespace viewer

@@ -11,7 +11,7 @@
 #include "viewer/film/avi_file.hpp"
 #include "viewer/film/encoder_program.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -107,4 +107,4 @@ std::unique_ptr<FilmWriter> make_film_writer(const std::string& file, const Film
   throw std::invalid_argument("unknown kind of film");
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -8,7 +8,7 @@
 
 #include "sim/image/image.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Film that cannot be written.  what() is one line with the file and the reason.
 class FilmError : public std::runtime_error {
@@ -42,4 +42,4 @@ std::unique_ptr<FilmWriter> make_film_writer(const std::string& file, const Film
 /// Throws as make_film_writer() does, and creates nothing.
 void check_film_file(const std::string& file, const FilmFormat& format);
 
-}  // namespace tools
+}  // namespace viewer

@@ -9,7 +9,7 @@
 #include "devices/ranging/lidar.hpp"
 #include "devices/ranging/lidar3d.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -106,4 +106,4 @@ std::map<std::string, const LaserScans::Scan*> LaserScans::scans() const {
   return all;
 }
 
-}  // namespace tools
+}  // namespace viewer

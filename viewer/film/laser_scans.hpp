@@ -10,7 +10,7 @@
 
 #include "sim/world/world.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Last scans of the laser scanners of a world, as rays from where the sensor was when it measured to what it hit.
 class LaserScans {
@@ -52,4 +52,4 @@ class LaserScans {
   std::map<std::string, Scanner> scanners_;
 };
 
-}  // namespace tools
+}  // namespace viewer

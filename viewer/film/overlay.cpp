@@ -9,7 +9,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -211,4 +211,4 @@ void Overlay::draw_clock(OverlayCanvas& canvas, const SceneView& view) const {
   canvas.text(margin, height - margin, time + (settings_.title.empty() ? "" : "  " + settings_.title), {});
 }
 
-}  // namespace tools
+}  // namespace viewer

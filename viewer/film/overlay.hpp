@@ -13,7 +13,7 @@
 #include "viewer/film/overlay_canvas.hpp"
 #include "viewer/film/shape_edges.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Signs that are drawn over images.
 struct OverlayChoice {
@@ -88,4 +88,4 @@ class Overlay {
   std::unique_ptr<ShapeEdges> edges_;
 };
 
-}  // namespace tools
+}  // namespace viewer

@@ -8,7 +8,7 @@
 
 #include "viewer/film/stroke_font.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -198,4 +198,4 @@ void OverlayCanvas::segment(const Place& from, const Place& to, const Pen& pen, 
   }
 }
 
-}  // namespace tools
+}  // namespace viewer

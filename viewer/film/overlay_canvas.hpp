@@ -11,7 +11,7 @@
 #include "sim/scene/material.hpp"
 #include "viewer/film/scene_painter.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Look of a line, a dot or a text.
 struct Pen {
@@ -75,4 +75,4 @@ class OverlayCanvas {
   std::vector<LabelPlace> labels_;
 };
 
-}  // namespace tools
+}  // namespace viewer

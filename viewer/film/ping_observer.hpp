@@ -5,7 +5,7 @@
 #include "sim/world/world.hpp"
 #include "viewer/film/overlay.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Observer that gives the sounds of a world to an overlay.
 class PingObserver final : public sim::WorldObserver {
@@ -27,4 +27,4 @@ class PingObserver final : public sim::WorldObserver {
   Overlay& overlay_;
 };
 
-}  // namespace tools
+}  // namespace viewer

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <atomic>
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -90,4 +90,4 @@ RenderedScene& ScenePainter::paint(const SceneView& view) {
   return rendered_;
 }
 
-}  // namespace tools
+}  // namespace viewer

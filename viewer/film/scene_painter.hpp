@@ -11,7 +11,7 @@
 #include "sim/camera/water_view.hpp"
 #include "sim/world/world.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Camera and its pose.
 struct SceneView {
@@ -55,4 +55,4 @@ class ScenePainter {
   RenderedScene rendered_;
 };
 
-}  // namespace tools
+}  // namespace viewer

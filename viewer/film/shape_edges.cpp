@@ -11,7 +11,7 @@
 #include "sim/scene/color.hpp"
 #include "sim/world/part_collisions.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -111,7 +111,7 @@ const Lines& ShapeEdges::lines_of_mesh(const sim::PartConfig& part) {
   const auto [known, is_new] = meshes_.try_emplace({path, part.scale});
   if (!is_new) return known->second;
   try {
-    known->second = tools::lines_of(sim::load_mesh(path, part.scale));
+    known->second = viewer::lines_of(sim::load_mesh(path, part.scale));
   } catch (const sim::MeshError&) {
     // The file has changed since the world was built: there are no edges to draw.
   }
@@ -147,4 +147,4 @@ void ShapeEdges::draw(OverlayCanvas& canvas, BodyShapes shapes) {
   for (const auto& [name, object] : world_.objects()) draw_all(object, *object.config, name);
 }
 
-}  // namespace tools
+}  // namespace viewer

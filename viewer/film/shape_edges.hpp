@@ -9,7 +9,7 @@
 #include "sim/world/world.hpp"
 #include "viewer/film/overlay_canvas.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// How bodies are shown.
 enum class BodyShapes {
@@ -40,4 +40,4 @@ class ShapeEdges {
   std::map<std::pair<std::string, double>, Lines> meshes_;  // by file and scale
 };
 
-}  // namespace tools
+}  // namespace viewer

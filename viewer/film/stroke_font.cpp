@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -42,4 +42,4 @@ std::string_view strokes_of(char character) {
   return code >= 32 && code < 127 ? strokes[code - std::size_t{32}] : strokes['?' - 32];
 }
 
-}  // namespace tools
+}  // namespace viewer

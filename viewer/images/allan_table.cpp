@@ -14,7 +14,7 @@
 #include "experiment/files/scratch_directory.hpp"
 #include "shoal/message_codec.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -95,16 +95,17 @@ std::string script(const AllanTable& table, const std::string& csv, const std::s
       "set datafile separator ','\nset terminal pngcairo size 1000,{}\nset output {}\n"
       "set logscale xy\nset format y '10^{{%T}}'\nset grid\nset key top right\nset xlabel 'averaging time (s)'\n"
       "set multiplot layout {},1 title {} noenhanced\n",
-      60 + 440 * arrays.size(), gnuplot_text(png), arrays.size(), gnuplot_text("Allan deviation of " + table.channel));
+      60 + 440 * arrays.size(), experiment::gnuplot_text(png), arrays.size(),
+      experiment::gnuplot_text("Allan deviation of " + table.channel));
   // Curves of each panel.
   for (const std::string& array : arrays) {
-    text += fmt::format("set ylabel {} noenhanced\nplot ", gnuplot_text(array + unit_of(array)));
+    text += fmt::format("set ylabel {} noenhanced\nplot ", experiment::gnuplot_text(array + unit_of(array)));
     std::string separator;
     for (const AllanCurve& curve : table.curves) {
       if (array_of(curve.field) != array || !drawable(curve)) continue;
       text += fmt::format("{}{} every ::1 using 2:(strcol(1) eq {} ? $3 : NaN) with lines lw 2 title {} noenhanced",
-                          separator, gnuplot_text(csv), gnuplot_text(curve.field),
-                          gnuplot_text(curve.field.substr(array.size())));
+                          separator, experiment::gnuplot_text(csv), experiment::gnuplot_text(curve.field),
+                          experiment::gnuplot_text(curve.field.substr(array.size())));
       separator = ", ";
     }
     text += "\n";
@@ -143,12 +144,12 @@ std::string to_csv(const AllanTable& table) {
 }
 
 void plot(const AllanTable& table, const std::string& png) {
-  const ScratchDirectory scratch;
+  const experiment::ScratchDirectory scratch;
   std::ofstream(scratch.path / "allan.csv") << to_csv(table);
   std::ofstream(scratch.path / "plot.gp") << script(table, "allan.csv", std::filesystem::absolute(png).string());
-  if (run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(30), [] { return false; })) return;
+  if (experiment::run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(30), [] { return false; })) return;
   std::ifstream reported(scratch.path / "plot.log");
   throw std::runtime_error("gnuplot failed: " + std::string(std::istreambuf_iterator<char>(reported), {}));
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -7,7 +7,7 @@
 #include "shoal/message_schema.hpp"
 #include "sim/random/allan.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Allan deviation (IEEE 952-1997) of one numeric field of the messages.
 struct AllanCurve {
@@ -32,4 +32,4 @@ std::string to_csv(const AllanTable& table);
 /// Plots the table into a PNG file with gnuplot; one panel for each array.  Throws std::runtime_error.
 void plot(const AllanTable& table, const std::string& png);
 
-}  // namespace tools
+}  // namespace viewer

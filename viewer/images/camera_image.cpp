@@ -11,7 +11,7 @@
 #include "devices/ranging/camera.hpp"
 #include "sim/image/image_file.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -76,4 +76,4 @@ sim::Image8 displayable(const shoal::image_t& message) {
   }
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -4,10 +4,10 @@
 #include "shoal/image_t.hpp"
 #include "sim/image/image.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Converts the image of a camera message to a displayable one.  Throws std::runtime_error when its size, format and
 /// data are inconsistent; sim::ImageError when compressed data is damaged.
 sim::Image8 displayable(const shoal::image_t& message);
 
-}  // namespace tools
+}  // namespace viewer

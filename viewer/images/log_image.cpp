@@ -14,7 +14,7 @@
 #include "viewer/images/camera_image.hpp"
 #include "viewer/images/ranging_plot.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -118,4 +118,4 @@ LogImage draw_log(const std::string& log, const std::string& channel, const std:
   return {chosen.text(), reader.problems()};
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace tools {
+namespace viewer {
 
 /// Selects the message of a channel that is drawn; at most one member is set.  Neither: the last message.
 struct ImageChoice {
@@ -31,4 +31,4 @@ struct LogImage {
 LogImage draw_log(const std::string& log, const std::string& channel, const std::string& png,
                   const ImageChoice& choice);
 
-}  // namespace tools
+}  // namespace viewer

@@ -8,7 +8,7 @@
 
 #include "sim/world/world.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -137,4 +137,4 @@ sim::Pose framing_pose(const sim::World& world, const sim::OpticsConfig& optics,
   return camera_pose_for(framed(subjects), back_W, optics);
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -11,7 +11,7 @@ namespace sim {
 class World;
 }
 
-namespace tools {
+namespace viewer {
 
 /// Camera pose for an overview image of a world.
 struct Overview {
@@ -34,4 +34,4 @@ Overview overview_of(const sim::World& world, const sim::OpticsConfig& optics, b
 sim::Pose framing_pose(const sim::World& world, const sim::OpticsConfig& optics, const sim::Vector3d& back_W,
                        const std::string& vehicle = "");
 
-}  // namespace tools
+}  // namespace viewer

@@ -20,7 +20,7 @@
 #include "shoal/side_scan_t.hpp"
 #include "shoal/sonar_image_t.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -184,15 +184,16 @@ bool are_all_drawn(std::int64_t type) {
 void draw_ranging(const std::vector<sim::Bytes>& payloads, const std::string& title, const std::string& png) {
   const Drawing drawing = draw(payloads);
   if (drawing.data.empty()) throw std::runtime_error(title + ": there is nothing to draw");
-  const ScratchDirectory scratch;
+  const experiment::ScratchDirectory scratch;
   std::ofstream(scratch.path / "data", std::ios::binary) << drawing.data;
   std::ofstream(scratch.path / "plot.gp") << fmt::format(
       "set terminal pngcairo size 600,480\nset output {}\nset title {} noenhanced\n"
       "set tics out\nset autoscale fix\n{}",
-      gnuplot_text(std::filesystem::absolute(png).string()), gnuplot_text(title), drawing.commands);
-  if (run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(60), [] { return false; })) return;
+      experiment::gnuplot_text(std::filesystem::absolute(png).string()), experiment::gnuplot_text(title),
+      drawing.commands);
+  if (experiment::run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(60), [] { return false; })) return;
   std::ifstream reported(scratch.path / "plot.log");
   throw std::runtime_error("gnuplot failed: " + std::string(std::istreambuf_iterator<char>(reported), {}));
 }
 
-}  // namespace tools
+}  // namespace viewer

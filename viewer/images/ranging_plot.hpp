@@ -7,7 +7,7 @@
 
 #include "sim/bus/bus.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Returns true for types of which all messages are drawn in one plot, side_scan_t and multibeam_t; false for types of
 /// which each message is one image.
@@ -17,4 +17,4 @@ bool are_all_drawn(std::int64_t fingerprint);
 /// All are of one type.  Throws std::runtime_error with the reason.
 void draw_ranging(const std::vector<sim::Bytes>& payloads, const std::string& title, const std::string& png);
 
-}  // namespace tools
+}  // namespace viewer

@@ -7,7 +7,7 @@
 
 #include "viewer/log/log_poses.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -70,4 +70,4 @@ std::optional<LogDifference> first_difference(const std::string& path_a, const L
   return difference;
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -7,7 +7,7 @@
 
 #include "viewer/log/log_index.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// First difference between two logs.
 struct LogDifference {
@@ -21,4 +21,4 @@ struct LogDifference {
 std::optional<LogDifference> first_difference(const std::string& path_a, const LogIndex& a, const std::string& path_b,
                                               const LogIndex& b);
 
-}  // namespace tools
+}  // namespace viewer

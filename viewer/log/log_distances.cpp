@@ -8,7 +8,7 @@
 
 #include "viewer/page_data/view_json.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -99,4 +99,4 @@ std::string LogDistances::text(const std::optional<LogDifference>& difference) c
                     {"vehicles", std::move(vehicles)}});
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -12,7 +12,7 @@
 #include "viewer/log/log_difference.hpp"
 #include "viewer/log/log_poses.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Distances of each vehicle between two logs over time: of the frames of vehicles with the same name.  They are
 /// computed incrementally, so that the page stays responsive.
@@ -49,4 +49,4 @@ class LogDistances {
   std::vector<Vehicle> vehicles_;
 };
 
-}  // namespace tools
+}  // namespace viewer

@@ -11,7 +11,7 @@
 #include "shoal/wire_value.hpp"
 #include "viewer/log/message_times.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -130,4 +130,4 @@ void LogIndex::check(const std::string& path) const {
                  : ""));
 }
 
-}  // namespace tools
+}  // namespace viewer

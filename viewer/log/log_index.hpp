@@ -10,7 +10,7 @@
 #include "bridges/log/event_log.hpp"
 #include "viewer/page_data/traffic_history.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Where a log has what a viewer needs, by simulated time: found in one pass over the file.  Of a log with a rewind
 /// (lcm-logger's) the last of overlapping parts counts.
@@ -74,4 +74,4 @@ class LogIndex {
   TrafficHistory traffic_;
 };
 
-}  // namespace tools
+}  // namespace viewer

@@ -5,7 +5,7 @@
 #include "shoal/sim_scene_t.hpp"
 #include "viewer/log/scene_names.hpp"
 
-namespace tools {
+namespace viewer {
 
 bool LogPoses::read_names(std::uint64_t offset) {
   reader_.seek(offset);
@@ -49,4 +49,4 @@ const LogPoses::Poses* LogPoses::at(std::int64_t time_us) {
   }
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -12,7 +12,7 @@
 #include "viewer/log/log_index.hpp"
 #include "viewer/log/state_frame.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Reader of the poses of a log at any time, with the names of the bodies.
 class LogPoses {
@@ -41,4 +41,4 @@ class LogPoses {
   StateFrame frame_;
 };
 
-}  // namespace tools
+}  // namespace viewer

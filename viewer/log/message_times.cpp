@@ -3,7 +3,7 @@
 
 #include "shoal/wire_value.hpp"
 
-namespace tools {
+namespace viewer {
 
 std::optional<std::int64_t> stamp_of(std::span<const std::byte> payload) {
   constexpr std::size_t fingerprint_bytes = 8, stamp_bytes = 8;
@@ -21,4 +21,4 @@ void MessageTimes::take(std::string_view channel, std::span<const std::byte> pay
   is_simulated_ = offset_us_ == 0;
 }
 
-}  // namespace tools
+}  // namespace viewer

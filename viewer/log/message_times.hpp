@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-namespace tools {
+namespace viewer {
 
 /// Returns the time stamp at the start of the payload of a `sim.*` message, us since 1970 and simulated; none for a
 /// payload that is too short.
@@ -35,4 +35,4 @@ class MessageTimes {
   bool is_simulated_ = false;   // the stamps are the simulated time
 };
 
-}  // namespace tools
+}  // namespace viewer

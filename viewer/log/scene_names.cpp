@@ -6,7 +6,7 @@
 
 #include "viewer/page_data/view_json.hpp"
 
-namespace tools {
+namespace viewer {
 
 void SceneNames::add(std::string_view scene) {
   const nlohmann::json json = nlohmann::json::parse(scene, nullptr, false);
@@ -32,7 +32,7 @@ void SceneNames::arrange(std::uint32_t revision, std::span<const std::byte> bodi
   if (revision == newest_)
     frame.add(bodies);
   else
-    tools::arrange(bodies, of(revision), of(newest_), frame);
+    viewer::arrange(bodies, of(revision), of(newest_), frame);
 }
 
 void arrange(std::span<const std::byte> bodies, const std::vector<std::string>& names,
@@ -50,4 +50,4 @@ void arrange(std::span<const std::byte> bodies, const std::vector<std::string>& 
   }
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -10,7 +10,7 @@
 
 #include "viewer/log/state_frame.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Names of the movable bodies of scenes, by which states of one scene are shown in another: of another time, branch or
 /// log.
@@ -39,4 +39,4 @@ class SceneNames {
 void arrange(std::span<const std::byte> bodies, const std::vector<std::string>& names,
              const std::vector<std::string>& order, StateFrame& frame);
 
-}  // namespace tools
+}  // namespace viewer

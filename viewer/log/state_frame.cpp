@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -84,4 +84,4 @@ std::span<const std::byte> StateFrame::end() {
   return bytes_;
 }
 
-}  // namespace tools
+}  // namespace viewer

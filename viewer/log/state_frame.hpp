@@ -7,7 +7,7 @@
 #include "sim/base/math.hpp"
 #include "sim/bus/bus.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Binary frame with the poses of all movable bodies, for the live page; docs/develop/view_protocol.md has the layout.
 class StateFrame {
@@ -46,4 +46,4 @@ class StateFrame {
   std::uint32_t count_ = 0;
 };
 
-}  // namespace tools
+}  // namespace viewer

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace tools {
+namespace viewer {
 
 void EarlierEvents::add(std::string event) {
   events_.push_back(std::move(event));
@@ -24,4 +24,4 @@ std::optional<std::string> EarlierEvents::text_for(int clients) {
   return "{\"op\":\"events\",\"all\":true,\"dropped\":" + std::to_string(dropped_) + ",\"items\":[" + items + "]}";
 }
 
-}  // namespace tools
+}  // namespace viewer

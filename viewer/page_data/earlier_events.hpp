@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace tools {
+namespace viewer {
 
 /// Events of a run up to now, for pages that connect later.
 class EarlierEvents {
@@ -29,4 +29,4 @@ class EarlierEvents {
   int clients_ = 0;  // that have got the events
 };
 
-}  // namespace tools
+}  // namespace viewer

@@ -8,7 +8,7 @@
 
 #include "viewer/page_data/view_json.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -46,4 +46,4 @@ LookRequest parse_look(std::string_view text) {
   return request;
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-namespace tools {
+namespace viewer {
 
 /// Request `look` of a page: the poses at a time.
 struct LookRequest {
@@ -16,4 +16,4 @@ struct LookRequest {
 /// Reads a request.  Throws std::runtime_error with the key, the rule and the value.
 LookRequest parse_look(std::string_view text);
 
-}  // namespace tools
+}  // namespace viewer

@@ -11,7 +11,7 @@
 
 #include "shoal/wire_value.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -159,4 +159,4 @@ std::string message_frame(const shoal::MessageTypes& types, std::string_view cha
   return frame;
 }
 
-}  // namespace tools
+}  // namespace viewer

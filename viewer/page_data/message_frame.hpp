@@ -9,7 +9,7 @@
 
 #include "shoal/message_schema.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Largest payload whose fields are shown on a page.
 constexpr std::size_t max_shown_payload = std::size_t{8} << 20;
@@ -20,4 +20,4 @@ constexpr std::size_t max_shown_payload = std::size_t{8} << 20;
 std::string message_frame(const shoal::MessageTypes& types, std::string_view channel,
                           std::span<const std::byte> payload, std::int64_t time_us);
 
-}  // namespace tools
+}  // namespace viewer

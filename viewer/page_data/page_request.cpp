@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -100,4 +100,4 @@ std::string request_id(std::string_view text) {
   return json.size() <= longest_id ? json : "null";
 }
 
-}  // namespace tools
+}  // namespace viewer

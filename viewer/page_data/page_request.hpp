@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tools {
+namespace viewer {
 
 /// Error of a request of a page: what is wrong, for a person.
 class PageRequestError : public std::runtime_error {
@@ -48,4 +48,4 @@ SeriesRequest parse_series(std::string_view text);
 /// Returns the key `id` of a request as JSON: a number, or a text of at most 64 bytes; else `null`.
 std::string request_id(std::string_view text);
 
-}  // namespace tools
+}  // namespace viewer

@@ -9,7 +9,7 @@
 #include "shoal/sim_sound_arrival_t.hpp"
 #include "shoal/sim_sound_t.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -103,4 +103,4 @@ std::int64_t TrafficCounts::sent(const Names& names) const {
   return (to_all == sent_.end() ? 0 : to_all->second) + (to_one == sent_.end() ? 0 : to_one->second);
 }
 
-}  // namespace tools
+}  // namespace viewer

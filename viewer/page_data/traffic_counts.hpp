@@ -11,7 +11,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace tools {
+namespace viewer {
 
 /// Counts of the messages on each channel, and of who received from whom.  A vehicle or device receives from another by
 /// sound
@@ -73,4 +73,4 @@ class TrafficCounts {
 /// Returns the part of a channel before its first dot: by default the name of its vehicle.
 std::string_view prefix_of(std::string_view channel);
 
-}  // namespace tools
+}  // namespace viewer

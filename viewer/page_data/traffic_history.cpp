@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-namespace tools {
+namespace viewer {
 
 void TrafficHistory::set(Values& values, std::uint32_t marks, std::int64_t value) {
   if ((values.empty() ? 0 : values.back().value) == value) return;
@@ -126,4 +126,4 @@ TrafficHistory::Point TrafficHistory::before(std::uint64_t offset) const {
   return {restore(static_cast<std::size_t>(after - marks_.begin())), std::prev(after)->offset};
 }
 
-}  // namespace tools
+}  // namespace viewer

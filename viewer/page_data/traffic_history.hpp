@@ -9,7 +9,7 @@
 
 #include "viewer/page_data/traffic_counts.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Counts of a log at marks along it, some one per second, or of a run.  Only what has changed since the mark before
 /// takes memory; when there is too much of it, the marks of the older half are kept twice as far
@@ -74,4 +74,4 @@ class TrafficHistory {
   std::map<std::tuple<std::string, std::string, std::string>, Values> links_;  // last: outcome; empty: received
 };
 
-}  // namespace tools
+}  // namespace viewer

@@ -4,11 +4,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace tools {
+namespace viewer {
 
 /// Returns JSON on one line.  Names in a world need not be UTF-8: wrong bytes are replaced.
 inline std::string json_text(const nlohmann::json& json) {
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-}  // namespace tools
+}  // namespace viewer

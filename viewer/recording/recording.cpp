@@ -13,7 +13,7 @@
 #include "viewer/page_data/view_json.hpp"
 #include "viewer/server/view_messages.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -181,4 +181,4 @@ void Recording::set_asset(std::uint64_t hash, std::span<const std::byte> bytes) 
   entries_.push_back({Kind::asset, start_us_, hash, {reinterpret_cast<const char*>(bytes.data()), bytes.size()}});
 }
 
-}  // namespace tools
+}  // namespace viewer

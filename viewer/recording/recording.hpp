@@ -10,7 +10,7 @@
 
 #include "bridges/web/page_output.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// What the live page shows of a log, as messages of its protocol (docs/develop/view_protocol.md) with their times: the
 /// content of a page that needs no server.
@@ -76,4 +76,4 @@ class Recording final : public bridges::PageOutput {
   std::size_t states_ = 0, states_of_log_ = 0, dropped_texts_ = 0, text_bytes_ = 0, last_state_bytes_ = 0;
 };
 
-}  // namespace tools
+}  // namespace viewer

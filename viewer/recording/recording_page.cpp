@@ -9,7 +9,7 @@
 #include "experiment/files/html.hpp"
 #include "viewer/page_data/view_json.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -64,7 +64,7 @@ std::string modules_of(std::span<const bridges::EmbeddedFile> page) {
 }
 
 std::string data_element(std::string_view id, std::string_view packed) {
-  return "<script type=\"text/plain\" id=\"" + std::string(id) + "\">" + base64(packed) + "</script>\n";
+  return "<script type=\"text/plain\" id=\"" + std::string(id) + "\">" + experiment::base64(packed) + "</script>\n";
 }
 
 }  // namespace
@@ -121,4 +121,4 @@ RecordingPage make_recording_page(const std::string& log, const std::string& ver
   return page;
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -10,7 +10,7 @@
 #include "bridges/web/page_files.hpp"
 #include "viewer/recording/recording.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// A page that shows a log in three dimensions, in one file that needs no server and no network.
 struct RecordingPage {
@@ -36,4 +36,4 @@ RecordingPage make_recording_page(const std::string& log, const std::string& ver
 /// end an element.  `packed`: the bytes of a recording, compressed by gzip.  Throws std::runtime_error.
 std::string recording_html(std::span<const bridges::EmbeddedFile> page, std::string_view packed);
 
-}  // namespace tools
+}  // namespace viewer

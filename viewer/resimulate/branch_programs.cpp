@@ -10,7 +10,7 @@
 #include "experiment/results/run_error.hpp"
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -25,7 +25,7 @@ bool is_one_of(const std::string& command, const std::array<const char*, count>&
 
 }  // namespace
 
-BranchPrograms::BranchPrograms(ReplayedWorld& replayed, Execute execute)
+BranchPrograms::BranchPrograms(experiment::ReplayedWorld& replayed, Execute execute)
     : replayed_(replayed), execute_(std::move(execute)) {
   options_.launch = true;
   options_.quiet = true;
@@ -34,17 +34,17 @@ BranchPrograms::BranchPrograms(ReplayedWorld& replayed, Execute execute)
 
 void BranchPrograms::start() {
   stop();
-  if (const auto lost = replayed_.buses().lost_connection()) throw RunError(4, "bus", *lost);
+  if (const auto lost = replayed_.buses().lost_connection()) throw experiment::RunError(4, "bus", *lost);
   replayed_.buses().set_muted(false);
   replayed_.service().publish_info();
   replayed_.service().publish_step();
   replayed_.buses().end_of_step();
-  programs_ = std::make_unique<RunPrograms>(replayed_.loaded().config, options_, replayed_.buses(), "");
+  programs_ = std::make_unique<experiment::RunPrograms>(replayed_.loaded().config, options_, replayed_.buses(), "");
   synchronized_ = begun_ = false;
   set_acting(false);
   try {
     awaited_ = programs_->start();
-  } catch (const RunError&) {
+  } catch (const experiment::RunError&) {
     stop();
     throw;
   }
@@ -74,7 +74,7 @@ void BranchPrograms::end_of_step() {
   synchronized_ = false;
 }
 
-RunPrograms::Clients BranchPrograms::clients() {
+experiment::RunPrograms::Clients BranchPrograms::clients() {
   return {[this](const std::string& client) {
             replayed_.service().handle_requests(this);  // the last request may be to leave
             return replayed_.lockstep().has_left(client);
@@ -84,7 +84,8 @@ RunPrograms::Clients BranchPrograms::clients() {
             return !replayed_.lockstep().has(client);
           },
           [this](const std::string& client) {
-            return RunPrograms::Left{replayed_.lockstep().reason_to_leave(client), replayed_.lockstep().end_s(client)};
+            return experiment::RunPrograms::Left{replayed_.lockstep().reason_to_leave(client),
+                                                 replayed_.lockstep().end_s(client)};
           }};
 }
 
@@ -94,9 +95,9 @@ bool BranchPrograms::joined() {
   });
   if (awaited_.empty()) return true;
   if (Clock::now() > join_until_)
-    throw RunError(5, "timeout",
-                   fmt::format("lockstep: client '{}' has not joined within {:g} s", awaited_.front(),
-                               replayed_.loaded().config.lockstep.join_timeout_s));
+    throw experiment::RunError(5, "timeout",
+                               fmt::format("lockstep: client '{}' has not joined within {:g} s", awaited_.front(),
+                                           replayed_.loaded().config.lockstep.join_timeout_s));
   replayed_.buses().wait(max_wait);
   return false;
 }
@@ -105,7 +106,7 @@ bool BranchPrograms::ready() {
   replayed_.service().handle_requests(this);
   if (!programs_) return true;
   programs_->check(replayed_.world().now(), clients());
-  if (const auto lost = replayed_.buses().lost_connection()) throw RunError(4, "bus", *lost);
+  if (const auto lost = replayed_.buses().lost_connection()) throw experiment::RunError(4, "bus", *lost);
   if (!begun_ && !joined()) return false;
   begun_ = true;
   if (synchronized_) return true;
@@ -137,4 +138,4 @@ std::optional<std::string> BranchPrograms::execute(const std::string& command, c
                            "' is not possible in a record that is run again: use its page");
 }
 
-}  // namespace tools
+}  // namespace viewer

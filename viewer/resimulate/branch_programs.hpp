@@ -11,7 +11,7 @@
 #include "experiment/replay/replayed_world.hpp"
 #include "experiment/run/run_programs.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Programs of a world that is run again, for a branch whose programs are started again.  They start at the first step,
 /// follow the recorded steps in the lockstep, so that they know what they knew in the run, and act from the branch on.
@@ -21,7 +21,7 @@ class BranchPrograms final : private bridges::TimeMachine {
   using Execute = std::function<std::string(const std::string& command, double value)>;
 
   /// `replayed` has been built for programs and must outlive this.
-  BranchPrograms(ReplayedWorld& replayed, Execute execute);
+  BranchPrograms(experiment::ReplayedWorld& replayed, Execute execute);
 
   /// Starts the programs on the buses of the world, which is at the first step.  Throws RunError.
   void start();
@@ -44,17 +44,17 @@ class BranchPrograms final : private bridges::TimeMachine {
   using Clock = std::chrono::steady_clock;
 
   std::optional<std::string> execute(const std::string& command, const std::string& text, double value) override;
-  RunPrograms::Clients clients();
+  experiment::RunPrograms::Clients clients();
   /// Returns whether all programs have joined.
   bool joined();
 
-  ReplayedWorld& replayed_;
+  experiment::ReplayedWorld& replayed_;
   const Execute execute_;
-  RunOptions options_;
-  std::unique_ptr<RunPrograms> programs_;
+  experiment::RunOptions options_;
+  std::unique_ptr<experiment::RunPrograms> programs_;
   std::vector<std::string> awaited_;  // lockstep clients that have to join
   Clock::time_point join_until_{};
   bool synchronized_ = false, begun_ = false, acting_ = false;
 };
 
-}  // namespace tools
+}  // namespace viewer

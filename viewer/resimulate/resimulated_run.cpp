@@ -17,7 +17,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/state/state_archive.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -30,8 +30,9 @@ constexpr std::size_t max_snapshot_bytes = std::size_t{64} << 20;
 constexpr int rest_per_snapshot = 80;
 constexpr microseconds paused_wait{20'000};
 
-ReplayedWorld::Options replay_options(const ResimulatedRun::Options& options, ReplayedWorld::Watch inputs) {
-  ReplayedWorld::Options replay{"", options.load, options.threads, std::move(inputs), {}};
+experiment::ReplayedWorld::Options replay_options(const ResimulatedRun::Options& options,
+                                                  experiment::ReplayedWorld::Watch inputs) {
+  experiment::ReplayedWorld::Options replay{"", options.load, options.threads, std::move(inputs), {}};
   if (options.launch) replay.for_programs = options.lcm_url;
   return replay;
 }
@@ -39,13 +40,13 @@ ReplayedWorld::Options replay_options(const ResimulatedRun::Options& options, Re
 }  // namespace
 
 ResimulatedRun::ResimulatedRun(const Options& options, const std::string& version)
-    : log_(read_replay_log(options.log)),
+    : log_(experiment::read_replay_log(options.log)),
       page_(options.view, version),
       replayed_(log_, replay_options(options, page_tap()), page_tap()),
       scoring_(replayed_.world()),
       view_(
-          replayed_.bus(), replayed_.world(), [this](shoal::sim_scores_t& message) { fill_scores(scoring_, message); },
-          [] { return true; }),
+          replayed_.bus(), replayed_.world(),
+          [this](shoal::sim_scores_t& message) { experiment::fill_scores(scoring_, message); }, [] { return true; }),
       control_(replayed_.control()),
       snapshots_(snapshots_us / world().step_time().count(), max_snapshot_bytes) {
   if (options.launch) check_buses();
@@ -53,7 +54,7 @@ ResimulatedRun::ResimulatedRun(const Options& options, const std::string& versio
     programs_ = std::make_unique<BranchPrograms>(
         replayed_, [this](const std::string& command, double value) { return execute(command, value, ""); });
   if (log_.snapshot)
-    if (const std::string problem = restore_scores(scoring_, log_.snapshot->scores); !problem.empty())
+    if (const std::string problem = experiment::restore_scores(scoring_, log_.snapshot->scores); !problem.empty())
       sim::log_warn("{}: {}", log_.path, problem);
   control_.speed = 1;
   page_.start(world(), end_s(), {"recorded", programs(), programs_ != nullptr});
@@ -65,9 +66,10 @@ ResimulatedRun::ResimulatedRun(const Options& options, const std::string& versio
 /// Programs need buses of this machine without another simulator.
 void ResimulatedRun::check_buses() {
   if (replayed_.buses().leave_machine())
-    throw RunError(2, "configuration", "--launch: the buses of a record that is run again must not leave this machine");
+    throw experiment::RunError(2, "configuration",
+                               "--launch: the buses of a record that is run again must not leave this machine");
   if (const auto other = replayed_.another_simulator())
-    throw RunError(4, "bus", *other + "; choose another port with --lcm-url");
+    throw experiment::RunError(4, "bus", *other + "; choose another port with --lcm-url");
 }
 
 const char* ResimulatedRun::programs() const {
@@ -83,7 +85,7 @@ std::vector<std::string> ResimulatedRun::commands() const {
   return commands;
 }
 
-ReplayedWorld::Watch ResimulatedRun::page_tap() {
+experiment::ReplayedWorld::Watch ResimulatedRun::page_tap() {
   return [this](std::string_view channel, std::span<const std::byte> payload) {
     page_.message(channel, payload, world().now());
   };
@@ -98,7 +100,7 @@ sim::Bytes ResimulatedRun::save() {
   sim::Bytes saved = replayed_.save();
   const std::uint64_t size = saved.size();
   auto scores = sim::StateArchive::saver();
-  scoring_.visit_state(scores, History::length);
+  scoring_.visit_state(scores, experiment::History::length);
   scores.end();
   const sim::Bytes rest = scores.take_bytes();
   saved.insert(saved.end(), rest.begin(), rest.end());
@@ -114,7 +116,7 @@ void ResimulatedRun::load(const sim::Bytes& saved) {
   replayed_.load({saved.begin(), scores_at});
   const sim::Bytes rest(scores_at, saved.end() - sizeof size);
   auto scores = sim::StateArchive::restorer(rest);
-  scoring_.visit_state(scores, History::length);
+  scoring_.visit_state(scores, experiment::History::length);
   scores.end();
 }
 
@@ -224,7 +226,7 @@ std::string ResimulatedRun::execute(const std::string& command, double value, co
   if (command == "where") return place();
   if (command == "resume" && faulty_) throw std::runtime_error("the run cannot continue: go back");
   if (command == "resume" && at_end()) throw std::runtime_error("the record ends here: go back, or branch");
-  if (set_pace(control_, command, value)) return place();
+  if (experiment::set_pace(control_, command, value)) return place();
   if (command == "until") {
     if (!(value > sim::to_seconds(world().now()) && value <= 1e9))
       throw std::runtime_error(fmt::format("'until' needs a time after now and at most 1e9 s, got {}", value));
@@ -248,7 +250,7 @@ std::string ResimulatedRun::branch(const std::string& programs_text) {
   if (restarted_) {
     try {
       start_programs(step);
-    } catch (const RunError&) {
+    } catch (const experiment::RunError&) {
       // The record is shown from its start again.
       restarted_ = false;
       replayed_.restore_inputs();
@@ -294,7 +296,7 @@ std::string ResimulatedRun::rewind(double seconds) {
     snapshots_.discard_after(log_.begin_step() - 1);
     try {
       start_programs(target);
-    } catch (const RunError& error) {
+    } catch (const experiment::RunError& error) {
       fail(error.what());
       throw;
     }
@@ -337,4 +339,4 @@ std::string ResimulatedRun::change(const std::string& command, double value, con
   return reply;
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -22,7 +22,7 @@
 #include "viewer/resimulate/branch_programs.hpp"
 #include "viewer/server/run_view.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Live page of a record that is run again: it shows what was never recorded, too, and the scores.  Its pages pause it,
 /// step it, set its speed and go back in it; `branch` leaves the record: from then on they may change the world.  The
@@ -33,7 +33,7 @@ class ResimulatedRun {
     std::string log;
     sim::LoadOptions load;
     int threads = 0;  ///< threads that share a step; 0: one for each processor
-    ViewOptions view;
+    experiment::ViewOptions view;
     bool launch = false;  ///< branches start the programs of the world again
     std::string lcm_url;  ///< for them; empty: LCM_DEFAULT_URL, then the default
   };
@@ -45,7 +45,7 @@ class ResimulatedRun {
   std::string url() const { return page_.url(); }
   const sim::World& world() const { return replayed_.world(); }
   const sim::RunControl& control() const { return replayed_.control(); }
-  const Scoring& scoring() const { return scoring_; }
+  const experiment::Scoring& scoring() const { return scoring_; }
   double end_s() const;
   /// Returns what the programs of the present branch do: `recorded commands`, `restarted programs` or `no programs`.
   const char* programs() const;
@@ -62,7 +62,7 @@ class ResimulatedRun {
   using Clock = std::chrono::steady_clock;
 
   /// Returns a function that passes messages of the world on to the pages.
-  ReplayedWorld::Watch page_tap();
+  experiment::ReplayedWorld::Watch page_tap();
   void check_buses();
   void serve();
   void step();
@@ -80,15 +80,15 @@ class ResimulatedRun {
   std::string change(const std::string& command, double value, const std::string& text);
   std::string place() const;
 
-  ReplayLog log_;
+  experiment::ReplayLog log_;
   RunView page_;
-  ReplayedWorld replayed_;
-  Scoring scoring_;
+  experiment::ReplayedWorld replayed_;
+  experiment::Scoring scoring_;
   bridges::ViewPublisher view_;
   sim::RunControl& control_;
   std::unique_ptr<BranchPrograms> programs_;  // null: branches keep the commands of the record
-  Pacer pacer_;
-  SnapshotRing snapshots_;
+  experiment::Pacer pacer_;
+  experiment::SnapshotRing snapshots_;
   sim::Bytes first_;                // state at the start
   Clock::time_point not_before_{};  // wall time of the next snapshot
   // Requests of pages after a branch without programs, by step; with programs the world keeps them.
@@ -97,4 +97,4 @@ class ResimulatedRun {
   bool branched_ = false, restarted_ = false, faulty_ = false;
 };
 
-}  // namespace tools
+}  // namespace viewer

@@ -11,7 +11,7 @@
 #include "viewer/page_data/view_json.hpp"
 #include "viewer/server/page_drive.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -51,7 +51,7 @@ Json faults_json(const sim::DeviceType& type) {
 
 }  // namespace
 
-std::string forms_text(const sim::World& world, const DriveProfile& profile) {
+std::string forms_text(const sim::World& world, const experiment::DriveProfile& profile) {
   Json types = Json::object(), drives = Json::object();
   // Vehicles of the same model are driven alike.
   std::map<const void*, Json> by_model;
@@ -63,10 +63,10 @@ std::string forms_text(const sim::World& world, const DriveProfile& profile) {
     Json& kinds = by_model[&vehicle->config()];
     if (kinds.is_null()) {
       kinds = Json::array();
-      const DrivenVehicle driven = driven_vehicle(bridges::vehicle_message(*vehicle));
-      for (const DriveKind kind : drive_kinds(profile, driven))
+      const experiment::DrivenVehicle driven = experiment::driven_vehicle(bridges::vehicle_message(*vehicle));
+      for (const experiment::DriveKind kind : experiment::drive_kinds(profile, driven))
         kinds.push_back({{"kind", std::string(sim::word_of(drive_kind_words, kind))},
-                         {"axes", DriveMapping(profile, driven, kind).axes()}});
+                         {"axes", experiment::DriveMapping(profile, driven, kind).axes()}});
     }
     if (!kinds.empty()) drives[vehicle->name()] = kinds;
   }
@@ -84,4 +84,4 @@ std::string forms_text(const sim::World& world, const DriveProfile& profile) {
                     {"drives", std::move(drives)}});
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -4,7 +4,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -64,4 +64,4 @@ void FoxgloveView::serve(const std::function<State()>& state, const std::functio
   protocol_->set_state(state());
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -14,7 +14,7 @@
 #include "bridges/foxglove/foxglove_protocol.hpp"
 #include "bridges/web/web_server.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Foxglove, Lichtblick and PlotJuggler at the port of the live page.
 class FoxgloveView {
@@ -52,4 +52,4 @@ class FoxgloveView {
   Clock::time_point next_time_{}, next_state_{};
 };
 
-}  // namespace tools
+}  // namespace viewer

@@ -11,7 +11,7 @@
 #include "viewer/page_data/view_json.hpp"
 #include "viewer/server/page_traffic.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -197,4 +197,4 @@ void LogSeries::answer(const Job& job) {
   }
 }
 
-}  // namespace tools
+}  // namespace viewer

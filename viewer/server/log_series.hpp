@@ -15,7 +15,7 @@
 #include "viewer/log/log_index.hpp"
 #include "viewer/page_data/page_request.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Values of a field over time; NaN where a message has none.
 struct Series {
@@ -62,4 +62,4 @@ class LogSeries {
   std::thread thread_;
 };
 
-}  // namespace tools
+}  // namespace viewer

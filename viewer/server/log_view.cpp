@@ -12,7 +12,7 @@
 #include "viewer/page_data/look_request.hpp"
 #include "viewer/page_data/view_json.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -28,7 +28,8 @@ Json hello_json(const std::string& version, const char* source, const std::strin
 
 }  // namespace
 
-LogView::LogView(const std::string& path, const LogIndex& index, const ViewOptions& options, const std::string& version)
+LogView::LogView(const std::string& path, const LogIndex& index, const experiment::ViewOptions& options,
+                 const std::string& version)
     : path_(path),
       name_(std::filesystem::path(path).filename().string()),
       index_(index),
@@ -284,7 +285,7 @@ void LogView::handle(const bridges::ViewRequest& request) {
   }
 }
 
-BusView::BusView(const ViewOptions& options, const std::string& version, const std::string& bus)
+BusView::BusView(const experiment::ViewOptions& options, const std::string& version, const std::string& bus)
     : server_(web_options(options)), version_(version), bus_(bus) {
   send_hello();
   foxglove_.introduce(bus, version, bridges::foxglove::Control::none);
@@ -356,4 +357,4 @@ void BusView::send_status() {
                                       {"ended", nullptr}}));
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -19,13 +19,14 @@
 #include "viewer/server/run_view.hpp"
 #include "viewer/server/view_messages.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Live page of a log: plays it at any speed, and shows any time of it.
 class LogView {
  public:
   /// `index` is that of the file `path`.  Both must outlive this.  Throws bridges::WebError, BusError.
-  LogView(const std::string& path, const LogIndex& index, const ViewOptions& options, const std::string& version);
+  LogView(const std::string& path, const LogIndex& index, const experiment::ViewOptions& options,
+          const std::string& version);
 
   std::string url() const { return server_.url(); }
   /// Shows the bodies of another log at the same time, as branch 1; before the first advance().  `difference`: where
@@ -79,7 +80,7 @@ class LogView {
 /// Live page of what is on a bus: of a run in another process.
 class BusView {
  public:
-  BusView(const ViewOptions& options, const std::string& version, const std::string& bus);
+  BusView(const experiment::ViewOptions& options, const std::string& version, const std::string& bus);
 
   std::string url() const { return server_.url(); }
   void message(std::string_view channel, std::span<const std::byte> payload);
@@ -107,4 +108,4 @@ class BusView {
   std::int64_t status_us_ = 0;
 };
 
-}  // namespace tools
+}  // namespace viewer

@@ -6,7 +6,7 @@
 
 #include "viewer/page_data/message_frame.hpp"
 
-namespace tools {
+namespace viewer {
 
 void MessageFeed::subscribe(int client, const std::vector<Subscription>& subscriptions) {
   std::vector<Reader> readers;
@@ -112,4 +112,4 @@ void MessageFeed::send(int client, Reader& reader, Clock::time_point now) {
   reader.due = std::max(reader.due, now) + interval;
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -16,7 +16,7 @@
 #include "sim/bus/bus.hpp"
 #include "viewer/page_data/page_request.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Messages of the channels that pages have subscribed to: keeps the newest of each, and sends it when it is due.  A
 /// message is decoded only if it is sent.
@@ -78,4 +78,4 @@ class MessageFeed {
   std::deque<Earlier> past_;
 };
 
-}  // namespace tools
+}  // namespace viewer

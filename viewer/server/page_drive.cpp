@@ -9,7 +9,7 @@
 #include "experiment/drive/drive_error.hpp"
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -17,7 +17,7 @@ using Json = nlohmann::json;
 
 constexpr std::size_t max_values = 100;
 
-DrivePose pose_of(const sim::World& world, const sim::Vehicle& vehicle) {
+experiment::DrivePose pose_of(const sim::World& world, const sim::Vehicle& vehicle) {
   const sim::Pose X_WV = vehicle.X_WV();
   const double surface_m = world.medium().has_water() ? world.medium().still_surface_m() : 0;
   return {std::atan2(X_WV.linear()(1, 0), X_WV.linear()(0, 0)), surface_m - X_WV.translation().z()};
@@ -26,7 +26,7 @@ DrivePose pose_of(const sim::World& world, const sim::Vehicle& vehicle) {
 std::string text_of(const Json& message, const char* key) {
   const auto found = message.find(key);
   if (found == message.end() || found->is_null()) return {};
-  if (!found->is_string()) throw DriveError(std::string("'") + key + "' of drive must be a text");
+  if (!found->is_string()) throw experiment::DriveError(std::string("'") + key + "' of drive must be a text");
   return found->get<std::string>();
 }
 
@@ -34,15 +34,16 @@ std::string text_of(const Json& message, const char* key) {
 
 PageDrive::Request PageDrive::read(std::string_view text) {
   const Json message = Json::parse(text, nullptr, false);
-  if (!message.is_object()) throw DriveError("drive must be a JSON object");
+  if (!message.is_object()) throw experiment::DriveError("drive must be a JSON object");
   Request request{text_of(message, "vehicle"), text_of(message, "kind"), {}};
   const auto values = message.find("values");
   if (values == message.end() || values->is_null()) return request;
   if (!values->is_object() || values->size() > max_values)
-    throw DriveError("'values' of drive must be an object with at most 100 numbers");
+    throw experiment::DriveError("'values' of drive must be an object with at most 100 numbers");
   for (const auto& [axis, value] : values->items()) {
     if (!value.is_number() || !(std::abs(value.get<double>()) <= 1))
-      throw DriveError("'values." + sim::shortened(sim::printable(axis)) + "' of drive must be a number from -1 to 1");
+      throw experiment::DriveError("'values." + sim::shortened(sim::printable(axis)) +
+                                   "' of drive must be a number from -1 to 1");
     request.values.emplace(axis, value.get<double>());
   }
   return request;
@@ -51,10 +52,11 @@ PageDrive::Request PageDrive::read(std::string_view text) {
 void PageDrive::take(int client, const Request& request, const sim::World& world, Clock::time_point now) {
   const sim::Vehicle* vehicle = world.find_vehicle(request.vehicle);
   if (vehicle == nullptr)
-    throw DriveError("there is no vehicle '" + sim::shortened(sim::printable(request.vehicle)) + "' to drive");
+    throw experiment::DriveError("there is no vehicle '" + sim::shortened(sim::printable(request.vehicle)) +
+                                 "' to drive");
   auto seat = seats_.find(request.vehicle);
   if (seat != seats_.end() && seat->second.client != client && seat->second.driver.held())
-    throw DriveError("vehicle '" + request.vehicle + "' is driven by another page");
+    throw experiment::DriveError("vehicle '" + request.vehicle + "' is driven by another page");
   if (request.values.empty()) {
     if (seat != seats_.end()) seat->second.driver.release();
     return;
@@ -67,21 +69,22 @@ void PageDrive::take(int client, const Request& request, const sim::World& world
     seat = seats_.end();
   }
   if (seat == seats_.end()) {
-    std::optional<DriveKind> kind;
+    std::optional<experiment::DriveKind> kind;
     if (!request.kind.empty()) {
       kind = sim::value_of(drive_kind_words, request.kind);
       if (!kind)
-        throw DriveError("'kind' of drive must be twist, tilt, helm, thrust or joints, got '" +
-                         sim::shortened(sim::printable(request.kind)) + "'");
+        throw experiment::DriveError("'kind' of drive must be twist, tilt, helm, thrust or joints, got '" +
+                                     sim::shortened(sim::printable(request.kind)) + "'");
     }
-    const DrivenVehicle driven = driven_vehicle(bridges::vehicle_message(*vehicle));
+    const experiment::DrivenVehicle driven = experiment::driven_vehicle(bridges::vehicle_message(*vehicle));
     seat = seats_.emplace(request.vehicle, Seat{client, request.kind, {profile_, driven, kind}}).first;
   }
   // An axis that the vehicle does not have is a mistake, not nothing.
   const std::vector<std::string>& axes = seat->second.driver.mapping().axes();
   for (const auto& [axis, value] : request.values)
     if (std::find(axes.begin(), axes.end(), axis) == axes.end())
-      throw DriveError("vehicle '" + request.vehicle + "' has no axis '" + sim::shortened(sim::printable(axis)) + "'");
+      throw experiment::DriveError("vehicle '" + request.vehicle + "' has no axis '" +
+                                   sim::shortened(sim::printable(axis)) + "'");
   seat->second.driver.hold(request.values, now);
 }
 
@@ -92,12 +95,12 @@ void PageDrive::left(int client) {
 
 void PageDrive::run(const sim::World& world, Clock::time_point now, bool paused, const Publish& publish) {
   for (auto each = seats_.begin(); each != seats_.end();) {
-    Driver& driver = each->second.driver;
+    experiment::Driver& driver = each->second.driver;
     const sim::Vehicle* vehicle = world.find_vehicle(each->first);
     if (paused) driver.release();
     if (vehicle != nullptr) {
       const std::int64_t utime = world.epoch_us() + world.now().count();
-      for (const DriveCommand& command : driver.due(now, utime, pose_of(world, *vehicle)))
+      for (const experiment::DriveCommand& command : driver.due(now, utime, pose_of(world, *vehicle)))
         publish(each->first, command.channel, command.payload);
     }
     // Seats without a driver are given up.
@@ -105,4 +108,4 @@ void PageDrive::run(const sim::World& world, Clock::time_point now, bool paused,
   }
 }
 
-}  // namespace tools
+}  // namespace viewer

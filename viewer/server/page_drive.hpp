@@ -11,21 +11,21 @@
 #include "experiment/run/run_page.hpp"
 #include "sim/world/world.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Vehicles that pages drive by hand: one driver each, with its dead-man switch and watchdog (docs/guides/drive.md).
 /// The wall time is passed in.
 class PageDrive {
  public:
-  using Clock = Driver::Clock;
-  using Publish = RunPage::Publish;
+  using Clock = experiment::Driver::Clock;
+  using Publish = experiment::RunPage::Publish;
 
-  explicit PageDrive(DriveProfile profile) : profile_(std::move(profile)) {}
+  explicit PageDrive(experiment::DriveProfile profile) : profile_(std::move(profile)) {}
 
   /// Positions of the controls that a page sends.
   struct Request {
-    std::string vehicle, kind;  ///< kind: empty for the most fitting
-    DriveValues values;         ///< empty: the driver has let go
+    std::string vehicle, kind;       ///< kind: empty for the most fitting
+    experiment::DriveValues values;  ///< empty: the driver has let go
   };
   /// Reads the text of a message `drive`.  Throws DriveError with the reason.
   static Request read(std::string_view text);
@@ -36,17 +36,17 @@ class PageDrive {
   /// Publishes the commands that are due.  While the run is paused the drivers count as having let go.
   void run(const sim::World& world, Clock::time_point now, bool paused, const Publish& publish);
 
-  const DriveProfile& profile() const { return profile_; }
+  const experiment::DriveProfile& profile() const { return profile_; }
 
  private:
   struct Seat {
     int client;
     std::string kind;  ///< as requested
-    Driver driver;
+    experiment::Driver driver;
   };
 
-  DriveProfile profile_;
+  experiment::DriveProfile profile_;
   std::map<std::string, Seat, std::less<>> seats_;  // by vehicle
 };
 
-}  // namespace tools
+}  // namespace viewer

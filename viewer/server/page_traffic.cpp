@@ -9,7 +9,7 @@
 #include "viewer/page_data/page_request.hpp"
 #include "viewer/page_data/view_json.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -161,4 +161,4 @@ void PageTraffic::send_modems(std::int64_t time_us) {
   server_.retain("modems", json_text({{"op", "modems"}, {"time_us", time_us}, {"items", std::move(items)}}));
 }
 
-}  // namespace tools
+}  // namespace viewer

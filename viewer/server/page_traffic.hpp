@@ -13,7 +13,7 @@
 #include "viewer/page_data/traffic_history.hpp"
 #include "viewer/server/message_feed.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// What pages see of the messages themselves: the channels with their counts, who received from whom, and the messages
 /// of the channels that a page has subscribed to.
@@ -65,4 +65,4 @@ class PageTraffic {
 /// Sends `{"op":"reply","ok":false}` with the id of the request.
 void refuse(bridges::WebServer& server, const bridges::ViewRequest& request, const std::string& text);
 
-}  // namespace tools
+}  // namespace viewer

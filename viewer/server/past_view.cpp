@@ -5,7 +5,7 @@
 
 #include "viewer/page_data/view_json.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -110,4 +110,4 @@ void PastView::update(Clock::time_point now) {
   server_.retain("branches", std::move(text));
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -16,7 +16,7 @@
 #include "viewer/page_data/look_request.hpp"
 #include "viewer/server/pose_history.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// The past of a run on the live page: keeps poses, answers `look` of the pages, and lists the branches with the first
 /// time at which the poses of each differ from the present one.
@@ -64,4 +64,4 @@ class PastView {
   std::string branches_;
 };
 
-}  // namespace tools
+}  // namespace viewer

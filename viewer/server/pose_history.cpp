@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-namespace tools {
+namespace viewer {
 
 void PoseHistory::clear() {
   tracks_.clear();
@@ -177,4 +177,4 @@ std::vector<PoseHistory::Branch> PoseHistory::branches() const {
   return all;
 }
 
-}  // namespace tools
+}  // namespace viewer

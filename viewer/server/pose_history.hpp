@@ -10,7 +10,7 @@
 
 #include "sim/bus/bus.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Poses of all movable bodies of a run in the past, for each of its branches: ten times per simulated second, in
 /// bounded memory.  When it is full, the states of the older half are kept further apart.
@@ -81,4 +81,4 @@ class PoseHistory {
   std::map<std::int32_t, Track> tracks_{{0, {}}};
 };
 
-}  // namespace tools
+}  // namespace viewer

@@ -9,7 +9,7 @@
 #include "viewer/page_data/view_json.hpp"
 #include "viewer/server/forms_text.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -20,7 +20,7 @@ constexpr std::chrono::milliseconds status_interval{200};
 
 }  // namespace
 
-bridges::WebOptions web_options(const ViewOptions& options) {
+bridges::WebOptions web_options(const experiment::ViewOptions& options) {
   bridges::WebOptions web;
   web.host = options.host;
   web.port = options.port;
@@ -31,15 +31,15 @@ bridges::WebOptions web_options(const ViewOptions& options) {
   return web;
 }
 
-RunView::RunView(const ViewOptions& options, const std::string& version)
+RunView::RunView(const experiment::ViewOptions& options, const std::string& version)
     : server_(web_options(options)),
       opened_(options.opened),
       foxglove_control_(options.foxglove_control),
       version_(version),
-      drive_(read_drive_profile(options.drive_profile)) {}
+      drive_(experiment::read_drive_profile(options.drive_profile)) {}
 
-RunPage::Make run_page(const ViewOptions& options) {
-  return [&options] { return std::make_unique<RunView>(options, short_version()); };
+experiment::RunPage::Make run_page(const experiment::ViewOptions& options) {
+  return [&options] { return std::make_unique<RunView>(options, experiment::short_version()); };
 }
 
 void RunView::announce() const {
@@ -161,9 +161,9 @@ void RunView::handle(const bridges::ViewRequest& request, const Execute& execute
 
 void RunView::drive(const bridges::ViewRequest& request, const sim::World& world) {
   try {
-    if (!publish_drive_) throw DriveError("this run cannot be driven");
+    if (!publish_drive_) throw experiment::DriveError("this run cannot be driven");
     drive_.take(request.client, PageDrive::read(request.text), world, Clock::now());
-  } catch (const DriveError& error) {
+  } catch (const experiment::DriveError& error) {
     const Json message = Json::parse(request.text, nullptr, false);
     const Json id = message.is_object() ? message.value("id", Json()) : Json();
     server_.reply(request.client, json_text({{"op", "reply"}, {"id", id}, {"ok", false}, {"text", error.what()}}));
@@ -233,4 +233,4 @@ void RunView::ended(const sim::World& world, const sim::RunControl& control, con
   send_status(world, control, "", why, log);
 }
 
-}  // namespace tools
+}  // namespace viewer

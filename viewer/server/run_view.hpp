@@ -17,17 +17,17 @@
 #include "viewer/server/past_view.hpp"
 #include "viewer/server/view_messages.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Returns the settings of the server.
-bridges::WebOptions web_options(const ViewOptions& options);
+bridges::WebOptions web_options(const experiment::ViewOptions& options);
 
 /// Live page of a run: sends the state of the world at up to 30 Hz of wall time, and passes requests of the pages on.
 /// The run does not depend on it; without a page it does nothing.
-class RunView final : public RunPage {
+class RunView final : public experiment::RunPage {
  public:
   /// Starts the server.  Throws bridges::WebError, and sim::ConfigError for the profile.
-  RunView(const ViewOptions& options, const std::string& version);
+  RunView(const experiment::ViewOptions& options, const std::string& version);
 
   std::string url() const override { return server_.url(); }
   void announce() const override;
@@ -87,6 +87,6 @@ class RunView final : public RunPage {
 };
 
 /// Returns the function that starts such a page; `options` must outlive it.
-RunPage::Make run_page(const ViewOptions& options);
+experiment::RunPage::Make run_page(const experiment::ViewOptions& options);
 
-}  // namespace tools
+}  // namespace viewer

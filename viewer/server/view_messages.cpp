@@ -16,7 +16,7 @@
 #include "shoal/sim_sound_t.hpp"
 #include "viewer/page_data/view_json.hpp"
 
-namespace tools {
+namespace viewer {
 
 namespace {
 
@@ -228,4 +228,4 @@ void ViewMessages::flush() {
   server_.send_state(frame_.end());
 }
 
-}  // namespace tools
+}  // namespace viewer

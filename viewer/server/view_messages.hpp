@@ -16,7 +16,7 @@
 #include "viewer/log/state_frame.hpp"
 #include "viewer/page_data/earlier_events.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Returns an item of the text `estimates` of the page protocol.  `time_us`: simulated time of the estimate.
 std::string estimate_text(const std::string& vehicle, const VehicleEstimate& estimate, std::int64_t time_us);
@@ -104,4 +104,4 @@ class ViewMessages {
   std::int64_t bad_messages_ = 0;
 };
 
-}  // namespace tools
+}  // namespace viewer

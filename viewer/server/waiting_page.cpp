@@ -3,11 +3,11 @@
 
 #include "viewer/page_data/view_json.hpp"
 
-namespace tools {
+namespace viewer {
 
 using Json = nlohmann::json;
 
-WaitingPage::WaitingPage(const ViewOptions& options, const std::string& version, const std::string& world,
+WaitingPage::WaitingPage(const experiment::ViewOptions& options, const std::string& version, const std::string& world,
                          const std::string& problem)
     : server_(web_options(options)) {
   server_.retain("hello", json_text({{"op", "hello"},
@@ -32,4 +32,4 @@ void WaitingPage::serve() {
   }
 }
 
-}  // namespace tools
+}  // namespace viewer

@@ -6,13 +6,13 @@
 #include "bridges/web/web_server.hpp"
 #include "viewer/server/run_view.hpp"
 
-namespace tools {
+namespace viewer {
 
 /// Page without a run, which shows why there is none.
 class WaitingPage {
  public:
   /// `problem` may have several lines.  Throws bridges::WebError.
-  WaitingPage(const ViewOptions& options, const std::string& version, const std::string& world,
+  WaitingPage(const experiment::ViewOptions& options, const std::string& version, const std::string& world,
               const std::string& problem);
 
   std::string url() const { return server_.url(); }
@@ -23,4 +23,4 @@ class WaitingPage {
   bridges::WebServer server_;
 };
 
-}  // namespace tools
+}  // namespace viewer

@@ -39,7 +39,7 @@ void write_csv(std::ofstream file, const std::vector<OfflineRun::Published>& est
 }
 
 void write_tum(const std::string& path, const std::vector<OfflineRun::Published>& estimates) {
-  tools::TumFile file(path);
+  experiment::TumFile file(path);
   for (const auto& [time_us, message] : estimates)
     file.add(seconds(time_us), Eigen::Vector3d(message.position_m),
              Eigen::Quaterniond(Eigen::AngleAxisd(message.yaw_rad, Eigen::Vector3d::UnitZ())));
@@ -48,7 +48,7 @@ void write_tum(const std::string& path, const std::vector<OfflineRun::Published>
 
 void write_mrclam(const std::string& path, const std::string& vehicle,
                   const std::vector<OfflineRun::Published>& estimates) {
-  tools::MrclamPoses file(path, vehicle);
+  experiment::MrclamPoses file(path, vehicle);
   for (const auto& [time_us, message] : estimates)
     file.add(seconds(time_us), message.position_m[0], message.position_m[1], message.yaw_rad);
   file.close();

@@ -135,7 +135,7 @@ NavVehicle vehicle_of(const sim::WorldConfig& world, const sim::VehicleInstance&
     }
   }
   if (!disciplined && !config.clock.perfect()) add_clock(config.clock, vehicle);
-  vehicle.stamp_std_s = tools::errors_of(config, world.physics.step_s).stamp_std_s();
+  vehicle.stamp_std_s = experiment::errors_of(config, world.physics.step_s).stamp_std_s();
   if (usbl != nullptr) add_usbl(*usbl, vehicle);
   if (!vehicle.dvl) {
     vehicle.velocity_density = craft_density;
@@ -154,7 +154,7 @@ NavTeam team_of(const sim::WorldConfig& world) {
   for (const sim::VehicleInstance& instance : world.vehicles) {
     NavVehicle vehicle = vehicle_of(world, instance);
     if (!vehicle.modem) continue;
-    vehicle.usbl_errors.hearing = tools::usbl_hearing(*instance.config, configs, world.acoustics, medium);
+    vehicle.usbl_errors.hearing = experiment::usbl_hearing(*instance.config, configs, world.acoustics, medium);
     team.vehicles.push_back(std::move(vehicle));
   }
   if (team.vehicles.empty())

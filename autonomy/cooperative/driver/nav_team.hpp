@@ -35,7 +35,7 @@ struct NavVehicle {
   double depth_std_m = 0;        ///< white error of the depth, by pressure
   /// White errors of USBL.  That of the heading has its other parts, too, in a vehicle without DVL, where they are
   /// not states.
-  tools::UsblErrors usbl_errors;
+  experiment::UsblErrors usbl_errors;
 };
 
 /// Vehicles that navigate together: those with an acoustic modem, in the order of the world file.

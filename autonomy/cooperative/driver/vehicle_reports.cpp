@@ -166,7 +166,7 @@ Relative VehicleReports::relative_of(const NavVehicle& observer, const Eigen::Ve
   seen.range_m = level_m;
   seen.bearing_rad = std::atan2(d_W.y(), d_W.x());
   // A report is up to a period late, as ranges are.
-  const tools::UsblErrors::Plane variances = observer.usbl_errors.at(d_W);
+  const experiment::UsblErrors::Plane variances = observer.usbl_errors.at(d_W);
   const double across_m = std::hypot(std::sqrt(variances.across_m2), VehicleReports::min_range_std_m);
   // Near the vertical an error across makes the level too long: sqrt(level^2 + across^2), at most by itself.
   const double longer_m = std::hypot(level_m, across_m) - level_m;

@@ -19,7 +19,7 @@ constexpr double constant_time_s = 1e6;
 /// Least white error of a fix or a relative measurement.
 constexpr double min_white_m = 0.01;
 
-void set_errors(const tools::VehicleErrors& errors, LandVehicle& vehicle) {
+void set_errors(const experiment::VehicleErrors& errors, LandVehicle& vehicle) {
   vehicle.errors.heading_bias_rad = LandTeam::start_heading_std_rad;
   vehicle.errors.heading_walk_radprts =
       std::hypot(errors.turn_noise_radprts, errors.turn_scale_std * usual_turns_radprts);
@@ -28,7 +28,7 @@ void set_errors(const tools::VehicleErrors& errors, LandVehicle& vehicle) {
   if (errors.sightings) vehicle.seen_std_m = std::max(errors.sightings->white_std_m, min_white_m);
   if (!errors.gps) return;
   vehicle.fix_std_m = std::max(errors.gps->position.white_std, min_white_m);
-  for (const tools::SlowError& slow : errors.gps->position.slow) {
+  for (const experiment::SlowError& slow : errors.gps->position.slow) {
     vehicle.errors.slow_fix_m = std::hypot(vehicle.errors.slow_fix_m, slow.initial_std);
     vehicle.errors.slow_fix_time_s = slow.time_s > 0 ? slow.time_s : constant_time_s;
   }
@@ -77,7 +77,7 @@ std::optional<LandVehicle> land_vehicle_of(const sim::WorldConfig& world, const 
     }
   }
   if (vehicle.odometry.channel.empty()) return std::nullopt;
-  set_errors(tools::errors_of(config, world.physics.step_s), vehicle);
+  set_errors(experiment::errors_of(config, world.physics.step_s), vehicle);
   return vehicle;
 }
 

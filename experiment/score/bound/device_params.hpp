@@ -6,7 +6,7 @@
 #include "sim/device/device_registry.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Returns the parameters of a device of this model; null for one of another type.
 template <typename Model>
@@ -33,4 +33,4 @@ struct FirstDevice {
   double period_s(double step_s) const { return device->rate_hz > 0 ? std::max(1 / device->rate_hz, step_s) : step_s; }
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 void ErrorCovariance::predict(Eigen::Index first, const Eigen::MatrixXd& F, const Eigen::MatrixXd& Q) {
   const Eigen::Index count = F.rows();
@@ -56,4 +56,4 @@ void ErrorCovariance::visit_state(sim::StateArchive& archive) {
   P_ = Eigen::Map<const Eigen::MatrixXd>(values.data(), rows, rows);
 }
 
-}  // namespace tools
+}  // namespace experiment

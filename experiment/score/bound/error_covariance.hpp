@@ -5,7 +5,7 @@
 
 #include "sim/state/state_archive.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Covariance of the errors of a linear or linearized system: the recursion of a Kalman filter without its estimate.
 /// With Jacobians at the true states it is the posterior Cramer-Rao bound of a system with Gaussian noise (Tichavsky,
@@ -38,4 +38,4 @@ class ErrorCovariance {
   Eigen::MatrixXd P_;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -404,4 +404,4 @@ void TeamBound::check_restored(const sim::StateArchive& archive) const {
   }
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -16,7 +16,7 @@
 #include "sim/base/time.hpp"
 #include "sim/state/state_archive.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Posterior Cramer-Rao bound of the horizontal positions of a team along their true tracks, from the errors of their
 /// devices and the measurements that happened.  It is joint over the team: every measurement of every vehicle counts,
@@ -155,4 +155,4 @@ class TeamBound {
   Result result_;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -8,7 +8,7 @@
 #include "experiment/score/bound/device_params.hpp"
 #include "sim/acoustics/propagation.hpp"
 
-namespace tools {
+namespace experiment {
 
 double UsblHearing::cosine_std(double range_m) const {
   devices::UsblTone received = tone;
@@ -52,4 +52,4 @@ std::optional<UsblHearing> usbl_hearing(const sim::VehicleConfig& own,
   return std::nullopt;
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -9,7 +9,7 @@
 #include "sim/medium/medium.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Answers as a USBL with an `array:` receives them: the sonar equation along a straight line, without echoes, fading,
 /// shadows and other sounds.
@@ -43,4 +43,4 @@ std::optional<UsblHearing> usbl_hearing(const sim::VehicleConfig& own,
                                         const std::vector<const sim::VehicleConfig*>& vehicles,
                                         const sim::AcousticsConfig& acoustics, const sim::Medium& medium);
 
-}  // namespace tools
+}  // namespace experiment

@@ -14,7 +14,7 @@
 #include "devices/sound_positioning/usbl.hpp"
 #include "experiment/score/bound/device_params.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -113,4 +113,4 @@ VehicleErrors errors_of(const sim::VehicleConfig& vehicle, double step_s) {
   return errors;
 }
 
-}  // namespace tools
+}  // namespace experiment

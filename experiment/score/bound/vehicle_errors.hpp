@@ -12,7 +12,7 @@
 #include "sim/random/noise.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Slowly changing error of a quantity: constant, a random walk, or Gauss-Markov.
 struct SlowError {
@@ -110,4 +110,4 @@ struct VehicleErrors {
 /// `step_s`: step of the world, the period of devices that sample in every step.
 VehicleErrors errors_of(const sim::VehicleConfig& vehicle, double step_s);
 
-}  // namespace tools
+}  // namespace experiment

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 /// Square cells in the plane of the world; column 0 and row 0 have the smallest x and y.
 struct MapFrame {
@@ -34,4 +34,4 @@ struct GridMap {
 /// Largest number of cells of a map.
 inline constexpr std::int64_t max_map_cells = 64'000'000;
 
-}  // namespace tools
+}  // namespace experiment

@@ -9,7 +9,7 @@
 
 #include "sim/image/image_file.hpp"
 
-namespace tools {
+namespace experiment {
 
 sim::Image8 map_image(const GridMap& map) {
   sim::Image8 image(map.frame.width, map.frame.height, 1);
@@ -44,4 +44,4 @@ std::string write_map(const std::string& path, const GridMap& map) {
   return yaml.string();
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -6,7 +6,7 @@
 #include "experiment/score/map/grid_map.hpp"
 #include "sim/image/image.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Returns the image of a map as ROS map_server reads and saves it: north up, 0 occupied, 254 free, 205 unknown.  The
 /// inside of objects is unknown.
@@ -18,4 +18,4 @@ std::string map_yaml(const GridMap& map, const std::string& image);
 /// std::runtime_error with the path when a file cannot be written.
 std::string write_map(const std::string& path, const GridMap& map);
 
-}  // namespace tools
+}  // namespace experiment

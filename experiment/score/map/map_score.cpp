@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <functional>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -83,4 +83,4 @@ MapScores score_map(const GridMap& map, const CellHistory& truth, int tolerance,
   return scores;
 }
 
-}  // namespace tools
+}  // namespace experiment

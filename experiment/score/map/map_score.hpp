@@ -8,7 +8,7 @@
 #include "experiment/score/map/grid_map.hpp"
 #include "sim/state/state_archive.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// What the cells of the truth are, were, and since when.
 class CellHistory {
@@ -69,4 +69,4 @@ struct MapScores {
 /// right when the other has one at most `tolerance` columns and rows away.  Solid cells of the truth do not count.
 MapScores score_map(const GridMap& map, const CellHistory& truth, int tolerance, double now_s);
 
-}  // namespace tools
+}  // namespace experiment

@@ -10,7 +10,7 @@
 #include "shoal/occupancy_grid_t.hpp"
 #include "shoal/sim_info_t.hpp"
 
-namespace tools {
+namespace experiment {
 
 PublishedMap decode_map(std::span<const std::byte> payload) {
   const auto message = shoal::decode<shoal::occupancy_grid_t>(payload, shoal::Finite::required);
@@ -79,4 +79,4 @@ std::optional<GridMap> PublishedMaps::at(double at_s) {
   }
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -10,7 +10,7 @@
 #include "bridges/log/event_log.hpp"
 #include "experiment/score/map/grid_map.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Map that a program published, with its time.
 struct PublishedMap {
@@ -46,4 +46,4 @@ class PublishedMaps {
   std::optional<sim::Bytes> last_;
 };
 
-}  // namespace tools
+}  // namespace experiment

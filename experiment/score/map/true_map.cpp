@@ -8,7 +8,7 @@
 #include <set>
 #include <stdexcept>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -147,4 +147,4 @@ GridMap true_map(const sim::World& world, const MapFrame& frame, double height_m
   return map;
 }
 
-}  // namespace tools
+}  // namespace experiment

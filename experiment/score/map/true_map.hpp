@@ -7,7 +7,7 @@
 #include "sim/scene/scene.hpp"
 #include "sim/world/world.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Corners of an area of the map, m.
 struct MapArea {
@@ -29,4 +29,4 @@ std::optional<MapArea> area_of_objects(const sim::World& world, double height_m)
 /// between center lines is missed.
 GridMap true_map(const sim::World& world, const MapFrame& frame, double height_m);
 
-}  // namespace tools
+}  // namespace experiment

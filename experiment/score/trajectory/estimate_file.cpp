@@ -11,7 +11,7 @@
 #include "experiment/files/line_reader.hpp"
 #include "sim/config/message_text.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -148,4 +148,4 @@ EstimateFile parse_estimates(std::string_view text, const std::string& file) {
   return estimates;
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -8,7 +8,7 @@
 
 #include "sim/base/math.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Estimates of a position that another program wrote, in the world frame.
 struct EstimateFile {
@@ -31,4 +31,4 @@ struct EstimateFile {
 /// Times in s, positions in m.  `file`: name for errors.  Throws sim::ConfigError.
 EstimateFile parse_estimates(std::string_view text, const std::string& file);
 
-}  // namespace tools
+}  // namespace experiment

@@ -5,7 +5,7 @@
 
 #include "experiment/files/line_reader.hpp"
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -102,4 +102,4 @@ void parse_mrclam_measurements(std::string_view text, const std::string& file, c
   });
 }
 
-}  // namespace tools
+}  // namespace experiment

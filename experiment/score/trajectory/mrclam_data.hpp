@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 /// UTIAS multi-robot data set (MR.CLAM; Leung, Halpern, Barfoot and Liu, Int. J. Robotics Research 30(8), 2011).
 /// Times in s since 1970, lengths in m, angles in rad.
@@ -51,4 +51,4 @@ std::vector<MrclamData::Odometry> parse_mrclam_odometry(std::string_view text, c
 void parse_mrclam_measurements(std::string_view text, const std::string& file, const std::map<int, int>& subjects,
                                MrclamData::Robot& robot);
 
-}  // namespace tools
+}  // namespace experiment

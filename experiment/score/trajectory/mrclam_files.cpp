@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -92,4 +92,4 @@ void MrclamWriter::close() {
   }
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace tools {
+namespace experiment {
 
 /// Text file of a data set, with comments at its start.
 struct MrclamFile {
@@ -63,4 +63,4 @@ class MrclamWriter {
   std::vector<Robot> robots_;
 };
 
-}  // namespace tools
+}  // namespace experiment

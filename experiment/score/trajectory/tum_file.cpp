@@ -7,7 +7,7 @@
 #include <cstring>
 #include <stdexcept>
 
-namespace tools {
+namespace experiment {
 
 namespace {
 
@@ -33,4 +33,4 @@ void TumFile::close() {
   if (std::fclose(file_.release()) != 0 || bad) throw tum_error(path_);
 }
 
-}  // namespace tools
+}  // namespace experiment

@@ -7,7 +7,7 @@
 
 #include "sim/base/math.hpp"
 
-namespace tools {
+namespace experiment {
 
 /// Writer of a trajectory in the form of the TUM RGB-D benchmark, `t x y z qx qy qz qw`, which evo reads.
 class TumFile {
@@ -26,4 +26,4 @@ class TumFile {
   std::unique_ptr<std::FILE, Closer> file_;
 };
 
-}  // namespace tools
+}  // namespace experiment

@@ -11,15 +11,15 @@
 
 namespace {
 
+using experiment::Cell;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using tools::Cell;
 
 /// Its own folder with a map of 3 x 2 cells.
 struct MapFolder {
   MapFolder() {
     std::filesystem::create_directories(path);
-    tools::write_map(
+    experiment::write_map(
         path + "/a.png",
         {{-1.5, 2, 0.05, 3, 2}, {Cell::free, Cell::occupied, Cell::unknown, Cell::solid, Cell::free, Cell::free}});
   }

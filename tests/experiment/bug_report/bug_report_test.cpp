@@ -41,18 +41,18 @@ class BugReportTest : public testing::Test {
                                                          "metrics: [{name: distance, type: distance, vehicle: r1}]\n"),
                                        "small.yaml", test::LoadedTestWorld::with_messages({}));
     loaded.config.name = "small";
-    tools::RunOptions run;
+    experiment::RunOptions run;
     run.bus = "none";
     run.quiet = true;
     run.plots = false;
     run.results = options.directory = folder.file("run");
     run.record = record = folder.file("run.lcm");
-    EXPECT_EQ(tools::run_world(loaded, run).exit_code, 0);
+    EXPECT_EQ(experiment::run_world(loaded, run).exit_code, 0);
   }
 
   /// Packs, and unpacks by `tar` into a folder, whose name is returned.
   std::string packed() {
-    report = tools::write_bug_report(options);
+    report = experiment::write_bug_report(options);
     const std::string out = folder.file("out");
     fs::create_directories(out);
     EXPECT_EQ(std::system(("tar -xzf " + report.path + " -C " + out).c_str()), 0);
@@ -60,7 +60,7 @@ class BugReportTest : public testing::Test {
   }
   std::string error() const {
     try {
-      tools::write_bug_report(options);
+      experiment::write_bug_report(options);
     } catch (const std::runtime_error& error) {
       return error.what();
     }
@@ -68,8 +68,8 @@ class BugReportTest : public testing::Test {
   }
 
   ScratchFolder folder;
-  tools::BugOptions options;
-  tools::BugReport report;
+  experiment::BugOptions options;
+  experiment::BugReport report;
   std::string record;
 };
 
@@ -91,7 +91,7 @@ TEST_F(BugReportTest, HoldsWorldSummaryVersionsLogsAndTheEndOfTheRecord) {
   EXPECT_EQ(text_of(in + "metrics.csv"), text_of(options.directory + "/metrics.csv"));
   EXPECT_EQ(text_of(in + "logs/pilot.log"), "mayday\n");
   EXPECT_THAT(text_of(in + "versions.txt"),
-              AllOf(HasSubstr(tools::short_version()), HasSubstr("ODE: "), HasSubstr("glibc ")));
+              AllOf(HasSubstr(experiment::short_version()), HasSubstr("ODE: "), HasSubstr("glibc ")));
   EXPECT_EQ(text_of(in + "record_tail.lcm"), text_of(record));  // all of it: it is shorter than 10 s
   EXPECT_THAT(
       text_of(in + "README.txt"),
@@ -157,7 +157,7 @@ TEST_F(BugReportTest, KeepsTheEndOfALongLog) {
 TEST_F(BugReportTest, OfARunThatWasKilledHoldsWhatThereIs) {
   options.record = record;
   fs::remove(options.directory + "/summary.json");
-  report = tools::write_bug_report(options);
+  report = experiment::write_bug_report(options);
   EXPECT_THAT(report.left_out, Contains("summary.json: the run did not write it"));
   EXPECT_THAT(report.inside, Contains(HasSubstr("world.yaml")));
 }
@@ -189,9 +189,9 @@ TEST_F(BugReportTest, ReportsWhatItCannotUse) {
 }
 
 TEST(BugHint, NamesTheCommandThatReportsARun) {
-  EXPECT_EQ(tools::bug_hint("results/a", "a.lcm"), "to report this: shoal bug results/a --record a.lcm");
-  EXPECT_EQ(tools::bug_hint("results/a", ""), "to report this: shoal bug results/a");
-  EXPECT_THAT(tools::bug_hint("", ""), HasSubstr("run it again with --results DIR --record FILE"));
+  EXPECT_EQ(experiment::bug_hint("results/a", "a.lcm"), "to report this: shoal bug results/a --record a.lcm");
+  EXPECT_EQ(experiment::bug_hint("results/a", ""), "to report this: shoal bug results/a");
+  EXPECT_THAT(experiment::bug_hint("", ""), HasSubstr("run it again with --results DIR --record FILE"));
 }
 
 }  // namespace

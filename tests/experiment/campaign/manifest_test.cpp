@@ -24,8 +24,8 @@ struct PlannedFolder {
     write("small.yaml", test::rover_world("        - {name: lidar, type: lidar}\n", "", "",
                                           "metrics: [{name: e, type: position_error, vehicle: r1, channel: est}]\n"));
     write_study("seeds: [3, 4]\n");
-    study = tools::load_study(folder.file("study.yaml"));
-    tools::write_manifest(out(), study, tools::plan_study(study, out()));
+    study = experiment::load_study(folder.file("study.yaml"));
+    experiment::write_manifest(out(), study, experiment::plan_study(study, out()));
   }
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(folder.file(name), std::ios::binary) << text;
@@ -39,7 +39,7 @@ struct PlannedFolder {
   }
   std::string out() const { return folder.file("out"); }
   std::string text() const {
-    std::ifstream in(tools::manifest_path(out()), std::ios::binary);
+    std::ifstream in(experiment::manifest_path(out()), std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
   /// Error of reading the manifest after one of its texts was replaced.
@@ -50,12 +50,12 @@ struct PlannedFolder {
     changed.replace(at, before.size(), after);
     const std::string other = folder.file("other");
     std::filesystem::create_directories(other);
-    std::ofstream(tools::manifest_path(other), std::ios::binary) << changed;
+    std::ofstream(experiment::manifest_path(other), std::ios::binary) << changed;
     try {
-      const tools::Manifest manifest(other);
+      const experiment::Manifest manifest(other);
       for (std::size_t i = 1; i <= manifest.size(); ++i) manifest.run(i);
-      tools::PlannedStudy planned = tools::load_planned(manifest, {});
-      tools::check_planned(manifest, planned, {0, 1, 2, 3, 4, 5, 6, 7});
+      experiment::PlannedStudy planned = experiment::load_planned(manifest, {});
+      experiment::check_planned(manifest, planned, {0, 1, 2, 3, 4, 5, 6, 7});
       return {};
     } catch (const std::runtime_error& error) {
       return error.what();
@@ -63,7 +63,7 @@ struct PlannedFolder {
   }
 
   ScratchFolder folder;
-  tools::LoadedStudy study;
+  experiment::LoadedStudy study;
 };
 
 TEST(Manifest, KeepsTheAlgorithmsThatWereAdded) {
@@ -71,18 +71,18 @@ TEST(Manifest, KeepsTheAlgorithmsThatWereAdded) {
   folder.write("small.yaml", test::rover_world("        - {name: gps, type: gps}\n", "", "",
                                                "metrics: [{name: b, type: bound, vehicle: r1}]\n"));
   folder.write_study("seeds: [3, 4]\nlaunch: true\nalgorithms: [dr]\n");
-  tools::StudyChanges changes;
+  experiment::StudyChanges changes;
   changes.algorithms = {"ci"};
   try {
-    folder.study = tools::load_study(folder.folder.file("study.yaml"), changes);
+    folder.study = experiment::load_study(folder.folder.file("study.yaml"), changes);
   } catch (const std::exception& error) {
     FAIL() << error.what();
   }
-  tools::write_manifest(folder.out(), folder.study, tools::plan_study(folder.study, folder.out()));
-  const tools::Manifest manifest(folder.out());
+  experiment::write_manifest(folder.out(), folder.study, experiment::plan_study(folder.study, folder.out()));
+  const experiment::Manifest manifest(folder.out());
   EXPECT_THAT(manifest.algorithms(), ElementsAre("ci"));
-  EXPECT_THAT(tools::load_planned(manifest, {}).study.config.algorithms, ElementsAre("dr", "ci"));
-  EXPECT_THAT(tools::load_planned(manifest, {}, {"ci", "naive"}).study.config.algorithms,
+  EXPECT_THAT(experiment::load_planned(manifest, {}).study.config.algorithms, ElementsAre("dr", "ci"));
+  EXPECT_THAT(experiment::load_planned(manifest, {}, {"ci", "naive"}).study.config.algorithms,
               ElementsAre("dr", "ci", "naive"));
   EXPECT_THAT(folder.error_after("\"ci\"", "7"), HasSubstr("manifest.jsonl:1: 'algorithms' must be names"));
   EXPECT_THAT(folder.error_after("\"ci\"", "\"dr\""), HasSubstr("'algorithms': two algorithms have the name 'dr'"));
@@ -90,7 +90,7 @@ TEST(Manifest, KeepsTheAlgorithmsThatWereAdded) {
 
 TEST(Manifest, ListsTheRunsInTheOrderOfCasesPointsAndSeeds) {
   const PlannedFolder folder;
-  const tools::Manifest manifest(folder.out());
+  const experiment::Manifest manifest(folder.out());
   EXPECT_EQ(manifest.size(), 8u);
   EXPECT_THAT(manifest.seeds(), ElementsAre(3, 4));
   EXPECT_EQ(manifest.run(1).in_case, "a");
@@ -116,37 +116,37 @@ TEST(Manifest, ReportsWhatIsWrongWithItsLine) {
   EXPECT_THAT(folder.error_after("\"study\":\"/", "\"study\":\""), HasSubstr("'study' must be an absolute path"));
   EXPECT_THAT(folder.error_after("\"seed\":4", "\"seed\":5"), HasSubstr("run 2 is not as planned"));
   EXPECT_THAT(folder.error_after("\"case\":\"a\"", "\"case\":\"../b\""), HasSubstr("run 1 is not as planned"));
-  std::ofstream(tools::manifest_path(folder.out()), std::ios::app) << "{";
-  EXPECT_THROW(tools::Manifest{folder.out()}, std::runtime_error);
-  EXPECT_THROW(tools::Manifest{folder.folder.file("none")}, std::runtime_error);
+  std::ofstream(experiment::manifest_path(folder.out()), std::ios::app) << "{";
+  EXPECT_THROW(experiment::Manifest{folder.out()}, std::runtime_error);
+  EXPECT_THROW(experiment::Manifest{folder.folder.file("none")}, std::runtime_error);
 }
 
 TEST(Manifest, NoticesThatTheWorldHasChanged) {
   const PlannedFolder folder;
-  const tools::Manifest manifest(folder.out());
+  const experiment::Manifest manifest(folder.out());
   folder.write("small.yaml",
                test::rover_world("        - {name: lidar, type: lidar, beams: 7}\n", "", "",
                                  "metrics: [{name: e, type: position_error, vehicle: r1, channel: est}]\n"));
-  const tools::PlannedStudy planned = tools::load_planned(manifest, {});
-  EXPECT_THROW(tools::check_planned(manifest, planned, {0}), std::runtime_error);
+  const experiment::PlannedStudy planned = experiment::load_planned(manifest, {});
+  EXPECT_THROW(experiment::check_planned(manifest, planned, {0}), std::runtime_error);
   // What only changes the tables does not matter.
   const PlannedFolder other;
-  const tools::Manifest of_other(other.out());
+  const experiment::Manifest of_other(other.out());
   other.write_study("seeds: [1-9]\nfigures: [passed]\npass: [mean(a.passed) == 1]\n");
-  EXPECT_NO_THROW(tools::check_planned(of_other, tools::load_planned(of_other, {}), {0, 7}));
+  EXPECT_NO_THROW(experiment::check_planned(of_other, experiment::load_planned(of_other, {}), {0, 7}));
 }
 
 TEST(Manifest, IndicesAreNumbersAndRanges) {
-  EXPECT_THAT(tools::parse_indices("3", 8), ElementsAre(2));
-  EXPECT_THAT(tools::parse_indices("7-8,1,1-2", 8), ElementsAre(0, 1, 6, 7));
+  EXPECT_THAT(experiment::parse_indices("3", 8), ElementsAre(2));
+  EXPECT_THAT(experiment::parse_indices("7-8,1,1-2", 8), ElementsAre(0, 1, 6, 7));
   for (const char* wrong : {"", "0", "9", "1-9", "3-2", "x", "1,", "-1", "1-", "99999999999999999999"})
-    EXPECT_THROW(tools::parse_indices(wrong, 8), std::invalid_argument) << wrong;
-  EXPECT_EQ(tools::indices_text({0, 1, 2, 4, 6, 7}), "1-3,5,7-8");
-  EXPECT_THAT(tools::parse_indices("1-3,5,7-8", 8), ElementsAre(0, 1, 2, 4, 6, 7));
+    EXPECT_THROW(experiment::parse_indices(wrong, 8), std::invalid_argument) << wrong;
+  EXPECT_EQ(experiment::indices_text({0, 1, 2, 4, 6, 7}), "1-3,5,7-8");
+  EXPECT_THAT(experiment::parse_indices("1-3,5,7-8", 8), ElementsAre(0, 1, 2, 4, 6, 7));
 }
 
 TEST(Manifest, ChunksHaveAllRunsOnce) {
-  const auto chunks = tools::chunks_of({1, 2, 3, 5, 8}, 2);
+  const auto chunks = experiment::chunks_of({1, 2, 3, 5, 8}, 2);
   EXPECT_THAT(chunks, ElementsAre(ElementsAre(1, 2), ElementsAre(3, 5), ElementsAre(8)));
 }
 
@@ -154,29 +154,29 @@ TEST(RunFiles, AHalfWrittenMarkIsNone) {
   const ScratchFolder folder;
   const std::string directory = folder.file("run");
   std::filesystem::create_directories(directory);
-  EXPECT_FALSE(tools::read_stamp(directory));
-  tools::write_stamp(directory, {"0123456789abcdef", "0.5 (x)"});
-  ASSERT_TRUE(tools::read_stamp(directory));
-  EXPECT_EQ(tools::read_stamp(directory)->inputs, "0123456789abcdef");
-  EXPECT_EQ(tools::read_stamp(directory)->version, "0.5 (x)");
+  EXPECT_FALSE(experiment::read_stamp(directory));
+  experiment::write_stamp(directory, {"0123456789abcdef", "0.5 (x)"});
+  ASSERT_TRUE(experiment::read_stamp(directory));
+  EXPECT_EQ(experiment::read_stamp(directory)->inputs, "0123456789abcdef");
+  EXPECT_EQ(experiment::read_stamp(directory)->version, "0.5 (x)");
   std::ofstream(directory + "/study_stamp.txt") << "inputs 0123456789abcdef\nshoal 0.5";
-  EXPECT_FALSE(tools::read_stamp(directory));
-  tools::write_failure(directory, {"0123456789abcdef", "two\nlines"});
-  EXPECT_EQ(tools::read_failure(directory)->reason, "two\nlines");
-  tools::StudyRun run;
+  EXPECT_FALSE(experiment::read_stamp(directory));
+  experiment::write_failure(directory, {"0123456789abcdef", "two\nlines"});
+  EXPECT_EQ(experiment::read_failure(directory)->reason, "two\nlines");
+  experiment::StudyRun run;
   run.directory = directory;
-  tools::remove_marks(run);
-  EXPECT_FALSE(tools::read_failure(directory));
+  experiment::remove_marks(run);
+  EXPECT_FALSE(experiment::read_failure(directory));
 }
 
 TEST(RunClaim, OnlyOneProcessHasAFolder) {
   const ScratchFolder folder;
-  std::optional<tools::RunClaim> first(std::in_place, folder.file(""), folder.file("run"));
+  std::optional<experiment::RunClaim> first(std::in_place, folder.file(""), folder.file("run"));
   EXPECT_FALSE(first->owner());
-  const tools::RunClaim second(folder.file(""), folder.file("run"));
+  const experiment::RunClaim second(folder.file(""), folder.file("run"));
   EXPECT_TRUE(second.owner());
   first.reset();
-  EXPECT_FALSE(tools::RunClaim(folder.file(""), folder.file("run")).owner());
+  EXPECT_FALSE(experiment::RunClaim(folder.file(""), folder.file("run")).owner());
 }
 
 }  // namespace

@@ -23,26 +23,26 @@
 
 namespace {
 
+using experiment::DriveKind;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using tools::DriveKind;
 
 /// A vehicle with these devices: name and type.
-tools::DrivenVehicle vehicle(const std::vector<std::pair<std::string, std::string>>& devices) {
-  tools::DrivenVehicle made{"v", {}};
+experiment::DrivenVehicle vehicle(const std::vector<std::pair<std::string, std::string>>& devices) {
+  experiment::DrivenVehicle made{"v", {}};
   for (const auto& [name, type] : devices)
     made.devices.push_back(
         {name, type, "v." + name + ".cmd", sim::DeviceRegistry::instance().find(type)->command_messages});
   return made;
 }
 
-const tools::DriveProfile& profile() {
-  static const tools::DriveProfile profile = tools::read_drive_profile("");
+const experiment::DriveProfile& profile() {
+  static const experiment::DriveProfile profile = experiment::read_drive_profile("");
   return profile;
 }
 
 template <typename Message>
-Message only(const std::vector<tools::DriveCommand>& commands, const std::string& channel) {
+Message only(const std::vector<experiment::DriveCommand>& commands, const std::string& channel) {
   EXPECT_EQ(commands.size(), 1u);
   EXPECT_EQ(commands.at(0).channel, channel);
   return shoal::decode<Message>(commands.at(0).payload, shoal::Finite::any);
@@ -50,7 +50,7 @@ Message only(const std::vector<tools::DriveCommand>& commands, const std::string
 
 std::string profile_error(const std::string& text) {
   try {
-    tools::parse_drive_profile(text, "pad.yaml");
+    experiment::parse_drive_profile(text, "pad.yaml");
   } catch (const sim::ConfigError& error) {
     return error.what();
   }
@@ -58,7 +58,7 @@ std::string profile_error(const std::string& text) {
 }
 
 TEST(DriveMapping, CommandsATwistToADrive) {
-  tools::DriveMapping mapping(profile(), vehicle({{"drive", "skid_steer"}}), {});
+  experiment::DriveMapping mapping(profile(), vehicle({{"drive", "skid_steer"}}), {});
   EXPECT_EQ(mapping.kind(), DriveKind::twist);
   const auto command =
       only<shoal::twist_command_t>(mapping.commands({{"forward", 0.5}, {"turn", -2}}, 7, {}), "v.drive.cmd");
@@ -71,7 +71,7 @@ TEST(DriveMapping, CommandsATwistToADrive) {
 }
 
 TEST(DriveMapping, SteersACarByItsAngle) {
-  tools::DriveMapping mapping(profile(), vehicle({{"drive", "ackermann_drive"}}), {});
+  experiment::DriveMapping mapping(profile(), vehicle({{"drive", "ackermann_drive"}}), {});
   const auto command =
       only<shoal::ackermann_command_t>(mapping.commands({{"forward", -1}, {"turn", 1}}, 0, {}), "v.drive.cmd");
   EXPECT_DOUBLE_EQ(command.speed_mps, -profile().twist.forward_mps);
@@ -79,10 +79,10 @@ TEST(DriveMapping, SteersACarByItsAngle) {
 }
 
 TEST(DriveMapping, LeadsTheHeadingOfAHelmAndKeepsItWhenTheTurnEnds) {
-  tools::DriveMapping mapping(profile(), vehicle({{"port", "thruster"}, {"autopilot", "autopilot"}}), {});
+  experiment::DriveMapping mapping(profile(), vehicle({{"port", "thruster"}, {"autopilot", "autopilot"}}), {});
   EXPECT_EQ(mapping.kind(), DriveKind::helm);
-  const auto helm = [&](const tools::DriveValues& values, double yaw_rad, double depth_m) {
-    return only<shoal::helm_command_t>(mapping.commands(values, 0, tools::DrivePose{yaw_rad, depth_m}),
+  const auto helm = [&](const experiment::DriveValues& values, double yaw_rad, double depth_m) {
+    return only<shoal::helm_command_t>(mapping.commands(values, 0, experiment::DrivePose{yaw_rad, depth_m}),
                                        "v.autopilot.cmd");
   };
   const auto straight = helm({{"forward", 1}}, 0.3, 5);
@@ -100,7 +100,7 @@ TEST(DriveMapping, LeadsTheHeadingOfAHelmAndKeepsItWhenTheTurnEnds) {
 }
 
 TEST(DriveMapping, TakesTheKindThatIsAskedFor) {
-  tools::DriveMapping mapping(profile(), vehicle({{"drive", "naive_drive"}}), DriveKind::thrust);
+  experiment::DriveMapping mapping(profile(), vehicle({{"drive", "naive_drive"}}), DriveKind::thrust);
   EXPECT_THAT(mapping.axes(), ElementsAre("forward", "turn", "dive"));
   const auto command = only<shoal::thrust_rudder_elevator_command_t>(
       mapping.commands({{"forward", 1}, {"turn", -0.5}, {"dive", 0.25}}, 0, {}), "v.drive.cmd");
@@ -110,34 +110,34 @@ TEST(DriveMapping, TakesTheKindThatIsAskedFor) {
 }
 
 TEST(DriveMapping, MixesThrustersFinsAndWrenches) {
-  const tools::DriveProfile own = tools::parse_drive_profile(
+  const experiment::DriveProfile own = experiment::parse_drive_profile(
       "crafts: [{name: cat, devices: [{device: port, forward: 60, turn: -40}, {device: starboard, forward: 60, turn: "
       "40}]}, {name: ball, devices: [{device: w, part: force_x_N, forward: 3}, {device: w, part: torque_z_Nm, turn: "
       "-2}]}]",
       "pad.yaml");
-  tools::DriveMapping cat(own, vehicle({{"port", "thruster"}, {"starboard", "thruster"}}), {});
+  experiment::DriveMapping cat(own, vehicle({{"port", "thruster"}, {"starboard", "thruster"}}), {});
   EXPECT_EQ(cat.kind(), DriveKind::thrust);
   EXPECT_THAT(cat.axes(), ElementsAre("forward", "turn"));
   const auto commands = cat.commands({{"forward", 0.5}, {"turn", 1}}, 0, {});
   ASSERT_EQ(commands.size(), 2u);
-  const auto value = [](const tools::DriveCommand& command) {
+  const auto value = [](const experiment::DriveCommand& command) {
     return shoal::decode<shoal::actuator_command_t>(command.payload, shoal::Finite::required).value;
   };
   EXPECT_DOUBLE_EQ(value(commands[0]), 0.5 * 60 - 40);
   EXPECT_DOUBLE_EQ(value(commands[1]), 0.5 * 60 + 40);
-  tools::DriveMapping ball(own, vehicle({{"w", "body_wrench"}}), {});
+  experiment::DriveMapping ball(own, vehicle({{"w", "body_wrench"}}), {});
   const auto wrench = only<shoal::wrench_t>(ball.commands({{"forward", 1}, {"turn", 1}}, 0, {}), "v.w.cmd");
   EXPECT_DOUBLE_EQ(wrench.force_N[0], 3);
   EXPECT_DOUBLE_EQ(wrench.torque_Nm[2], -2);
 }
 
 TEST(DriveMapping, RunsJointsAtAVelocityAndHoldsTheOthers) {
-  tools::DriveMapping mapping(profile(), vehicle({{"waist", "joint_servo"}, {"elbow", "joint_servo"}}), {});
+  experiment::DriveMapping mapping(profile(), vehicle({{"waist", "joint_servo"}, {"elbow", "joint_servo"}}), {});
   EXPECT_EQ(mapping.kind(), DriveKind::joints);
   EXPECT_THAT(mapping.axes(), ElementsAre("waist", "elbow"));
   const auto commands = mapping.commands({{"elbow", -1}}, 0, {});
   ASSERT_EQ(commands.size(), 2u);
-  const auto command = [](const tools::DriveCommand& one) {
+  const auto command = [](const experiment::DriveCommand& one) {
     return shoal::decode<shoal::joint_servo_command_t>(one.payload, shoal::Finite::required);
   };
   EXPECT_EQ(command(commands[0]).mode, 1);
@@ -147,20 +147,21 @@ TEST(DriveMapping, RunsJointsAtAVelocityAndHoldsTheOthers) {
 
 TEST(DriveMapping, DrivesTheSegwayThroughTheProgramThatBalancesIt) {
   const test::LoadedTestWorld segway(test_support::source_path("worlds/segway.yaml"));
-  const tools::DrivenVehicle driven =
-      tools::driven_vehicle(bridges::vehicle_message(*segway.world.find_vehicle("segway1")));
-  EXPECT_THAT(tools::drive_kinds(profile(), driven), ElementsAre(DriveKind::twist, DriveKind::tilt, DriveKind::joints));
-  tools::DriveMapping mapping(profile(), driven, {});
+  const experiment::DrivenVehicle driven =
+      experiment::driven_vehicle(bridges::vehicle_message(*segway.world.find_vehicle("segway1")));
+  EXPECT_THAT(experiment::drive_kinds(profile(), driven),
+              ElementsAre(DriveKind::twist, DriveKind::tilt, DriveKind::joints));
+  experiment::DriveMapping mapping(profile(), driven, {});
   only<shoal::twist_command_t>(mapping.commands({}, 0, {}), "segway1.balance.cmd");
-  EXPECT_THAT(tools::DriveMapping(profile(), driven, DriveKind::joints).axes(),
+  EXPECT_THAT(experiment::DriveMapping(profile(), driven, DriveKind::joints).axes(),
               ElementsAre("left_motor", "right_motor"));
 }
 
 TEST(DriveMapping, TiltsTheSegwayAndStopsItWhenItTiltsNoMore) {
   const test::LoadedTestWorld segway(test_support::source_path("worlds/segway.yaml"));
-  const tools::DrivenVehicle driven =
-      tools::driven_vehicle(bridges::vehicle_message(*segway.world.find_vehicle("segway1")));
-  tools::DriveMapping mapping(profile(), driven, DriveKind::tilt);
+  const experiment::DrivenVehicle driven =
+      experiment::driven_vehicle(bridges::vehicle_message(*segway.world.find_vehicle("segway1")));
+  experiment::DriveMapping mapping(profile(), driven, DriveKind::tilt);
   EXPECT_THAT(mapping.axes(), ElementsAre("forward", "turn"));
   // The turn rate first, since a twist ends a tilt.
   const auto commands = mapping.commands({{"forward", -0.5}, {"turn", 1}}, 7, {});
@@ -176,10 +177,10 @@ TEST(DriveMapping, TiltsTheSegwayAndStopsItWhenItTiltsNoMore) {
 }
 
 TEST(DriveMapping, SaysWhatIsPossibleInstead) {
-  const auto error = [](const tools::DrivenVehicle& driven, std::optional<DriveKind> kind) -> std::string {
+  const auto error = [](const experiment::DrivenVehicle& driven, std::optional<DriveKind> kind) -> std::string {
     try {
-      tools::DriveMapping(profile(), driven, kind);
-    } catch (const tools::DriveError& problem) {
+      experiment::DriveMapping(profile(), driven, kind);
+    } catch (const experiment::DriveError& problem) {
       return problem.what();
     }
     return "";

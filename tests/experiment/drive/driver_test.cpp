@@ -10,7 +10,7 @@
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = tools::Driver::Clock;
+using Clock = experiment::Driver::Clock;
 
 class DriverTest : public testing::Test {
  protected:
@@ -21,8 +21,8 @@ class DriverTest : public testing::Test {
     return shoal::decode<shoal::twist_command_t>(commands.front().payload, shoal::Finite::required).forward_mps;
   }
   const Clock::time_point start{1h};
-  tools::DriveProfile profile = tools::read_drive_profile("");
-  tools::Driver driver{profile, {"v", {{"drive", "skid_steer", "v.drive.cmd", "shoal.twist_command_t"}}}, {}};
+  experiment::DriveProfile profile = experiment::read_drive_profile("");
+  experiment::Driver driver{profile, {"v", {{"drive", "skid_steer", "v.drive.cmd", "shoal.twist_command_t"}}}, {}};
 };
 
 TEST_F(DriverTest, CommandsNothingBeforeTheFirstSignOfLife) {
@@ -70,14 +70,14 @@ TEST_F(DriverTest, CommandsAChangeAtOnce) {
 }
 
 TEST_F(DriverTest, ATappedKeyMovesForAFifthOfASecondOnly) {
-  tools::DriveKeys keys(profile.keys);
-  ASSERT_EQ(keys.press("up"), tools::DriveKeys::Effect::sign_of_life);
+  experiment::DriveKeys keys(profile.keys);
+  ASSERT_EQ(keys.press("up"), experiment::DriveKeys::Effect::sign_of_life);
   driver.hold(keys.values(), start);
   EXPECT_EQ(speed_at(0ms), 0.25);
   EXPECT_EQ(speed_at(200ms), 0);
   // A terminal repeats a held key after half a second, then 30 times a second.
   for (int ms = 500; ms < 1000; ms += 33) {
-    ASSERT_EQ(keys.press("space"), tools::DriveKeys::Effect::sign_of_life);
+    ASSERT_EQ(keys.press("space"), experiment::DriveKeys::Effect::sign_of_life);
     driver.hold(keys.values(), start + ms * 1ms);
     EXPECT_NE(speed_at(ms * 1ms), 0) << ms;
   }
@@ -85,13 +85,13 @@ TEST_F(DriverTest, ATappedKeyMovesForAFifthOfASecondOnly) {
 }
 
 TEST(DriveKeys, StepsStopAtFullDeflectionAndComeBackToZero) {
-  tools::DriveKeys keys(tools::read_drive_profile("").keys);
+  experiment::DriveKeys keys(experiment::read_drive_profile("").keys);
   for (int i = 0; i < 9; ++i) keys.press("w");
   EXPECT_EQ(keys.values().at("forward"), 1);
   for (int i = 0; i < 4; ++i) keys.press("s");
   EXPECT_EQ(keys.values().at("forward"), 0);
   keys.press("a");
-  EXPECT_EQ(keys.press("x"), tools::DriveKeys::Effect::none);
+  EXPECT_EQ(keys.press("x"), experiment::DriveKeys::Effect::none);
   EXPECT_TRUE(keys.values().empty());
 }
 

@@ -29,12 +29,12 @@ std::vector<std::byte> kernel_bytes(long s, long us, std::uint16_t type, std::ui
 }
 
 std::string error_of(const std::vector<std::byte>& bytes) {
-  tools::InputEventReader reader;
+  experiment::InputEventReader reader;
   reader.add(bytes);
   try {
     while (reader.next()) {
     }
-  } catch (const tools::DriveError& error) {
+  } catch (const experiment::DriveError& error) {
     return error.what();
   }
   return "";
@@ -45,8 +45,8 @@ TEST(InputEventReader, ReadsTheEventsOfTheKernelInPiecesOfAnyLength) {
   const auto second = kernel_bytes(1700000001, 999999, EV_KEY, BTN_TL, 1);
   bytes.insert(bytes.end(), second.begin(), second.end());
   for (const std::size_t piece : {1u, 7u, 24u, 48u}) {
-    tools::InputEventReader reader;
-    std::vector<tools::InputEvent> events;
+    experiment::InputEventReader reader;
+    std::vector<experiment::InputEvent> events;
     for (std::size_t at = 0; at < bytes.size(); at += piece) {
       reader.add(std::span(bytes).subspan(at, std::min(piece, bytes.size() - at)));
       while (const auto event = reader.next()) events.push_back(*event);
@@ -59,7 +59,7 @@ TEST(InputEventReader, ReadsTheEventsOfTheKernelInPiecesOfAnyLength) {
     EXPECT_EQ(events[0].value, -32768);
     EXPECT_EQ(events[1].time_us, 1700000001999999);
     EXPECT_EQ(events[1].code, BTN_TL);
-    EXPECT_EQ(tools::bytes_of(events[1]), second);
+    EXPECT_EQ(experiment::bytes_of(events[1]), second);
   }
 }
 
@@ -79,8 +79,8 @@ TEST(InputEventFile, NamesTheFileInErrors) {
   };
   const auto error = [&](const std::string& file) -> std::string {
     try {
-      tools::read_input_events(file);
-    } catch (const tools::DriveError& problem) {
+      experiment::read_input_events(file);
+    } catch (const experiment::DriveError& problem) {
       return problem.what();
     }
     return "";
@@ -96,12 +96,12 @@ TEST(InputEventFile, NamesTheFileInErrors) {
   write(bytes);
   EXPECT_EQ(error(path), path + ": ends inside input event 2");
   write({});
-  EXPECT_TRUE(tools::read_input_events(path).empty());
+  EXPECT_TRUE(experiment::read_input_events(path).empty());
 }
 
 class GamepadTest : public testing::Test {
  protected:
-  tools::Gamepad pad{tools::read_drive_profile("").gamepad};
+  experiment::Gamepad pad{experiment::read_drive_profile("").gamepad};
 };
 
 TEST_F(GamepadTest, IsHeldWhileTheDeadManButtonIsDown) {

@@ -17,20 +17,20 @@ const auto never = [] { return false; };
 bool run(const ScratchFolder& folder, const std::string& script, std::chrono::milliseconds limit,
          const std::function<bool()>& give_up) {
   std::ofstream(folder.file("plot.gp")) << script;
-  return tools::run_gnuplot(folder.file(""), "plot.gp", limit, give_up);
+  return experiment::run_gnuplot(folder.file(""), "plot.gp", limit, give_up);
 }
 
 TEST(Gnuplot, TextsAreQuoted) {
-  EXPECT_EQ(tools::gnuplot_text("harbor"), "'harbor'");
-  EXPECT_EQ(tools::gnuplot_text("it's"), "'it''s'");
-  EXPECT_EQ(tools::gnuplot_text("a\nb\x7f"), "'a b '");
+  EXPECT_EQ(experiment::gnuplot_text("harbor"), "'harbor'");
+  EXPECT_EQ(experiment::gnuplot_text("it's"), "'it''s'");
+  EXPECT_EQ(experiment::gnuplot_text("a\nb\x7f"), "'a b '");
 }
 
 TEST(Gnuplot, AxisOfErrorsIsLogarithmicWhereTheyAreVeryDifferent) {
-  EXPECT_EQ(tools::axis_of_errors({1, 5}), "set yrange [0:*]\n");
-  EXPECT_EQ(tools::axis_of_errors({6, 1}), "set logscale y\nset yrange [0.05:*]\n");
+  EXPECT_EQ(experiment::axis_of_errors({1, 5}), "set yrange [0:*]\n");
+  EXPECT_EQ(experiment::axis_of_errors({6, 1}), "set logscale y\nset yrange [0.05:*]\n");
   for (const std::vector<double>& errors_m : {std::vector<double>{}, {3}, {0, 3}})
-    EXPECT_EQ(tools::axis_of_errors(errors_m), "set yrange [0:*]\n");
+    EXPECT_EQ(experiment::axis_of_errors(errors_m), "set yrange [0:*]\n");
 }
 
 TEST(Gnuplot, ReportsWhetherTheScriptRan) {

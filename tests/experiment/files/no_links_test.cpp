@@ -27,8 +27,8 @@ struct LinkedFolder {
 
 TEST(NoLinks, TheFolderItselfMayBeALink) {
   const LinkedFolder folder;
-  EXPECT_NO_THROW(tools::refuse_links(folder.root(), folder.below("below/file")));
-  tools::make_folders(folder.root(), folder.below("a/b"));
+  EXPECT_NO_THROW(experiment::refuse_links(folder.root(), folder.below("below/file")));
+  experiment::make_folders(folder.root(), folder.below("a/b"));
   EXPECT_TRUE(fs::is_directory(folder.scratch.file("real/a/b")));
 }
 
@@ -39,14 +39,14 @@ TEST(NoLinks, ALinkBelowIsAnErrorWithItsName) {
   fs::create_symlink(folder.scratch.file("nothing"), folder.below("dangling"));
   for (const char* path : {"below/link", "below/link/file"}) {
     try {
-      tools::refuse_links(folder.root(), folder.below(path));
+      experiment::refuse_links(folder.root(), folder.below(path));
       ADD_FAILURE() << path;
     } catch (const std::runtime_error& error) {
       EXPECT_THAT(error.what(), testing::HasSubstr("/below/link: is a symbolic link"));
     }
   }
-  EXPECT_THROW(tools::refuse_links(folder.root(), folder.below("dangling")), std::runtime_error);
-  EXPECT_THROW(tools::make_folders(folder.root(), folder.below("below/link/new")), std::runtime_error);
+  EXPECT_THROW(experiment::refuse_links(folder.root(), folder.below("dangling")), std::runtime_error);
+  EXPECT_THROW(experiment::make_folders(folder.root(), folder.below("below/link/new")), std::runtime_error);
   EXPECT_TRUE(fs::is_empty(folder.scratch.file("victim")));
 }
 
@@ -56,19 +56,19 @@ TEST(NoLinks, ANewFileTakesThePlaceOfALinkAndLeavesItsTarget) {
   std::ofstream(victim) << "keep";
   fs::create_symlink(victim, path);
   {
-    const bridges::FileDescriptor file = tools::make_new_file(path);
+    const bridges::FileDescriptor file = experiment::make_new_file(path);
     EXPECT_EQ(write(file.number(), "new", 3), 3);
   }
   EXPECT_FALSE(fs::is_symlink(path));
   EXPECT_EQ(fs::file_size(path), 3u);
   EXPECT_EQ(fs::file_size(victim), 4u);
-  { const bridges::FileDescriptor again = tools::make_new_file(path); }
+  { const bridges::FileDescriptor again = experiment::make_new_file(path); }
   EXPECT_EQ(fs::file_size(path), 0u);
   fs::create_directory(scratch.file("folder"));
-  EXPECT_THROW(tools::make_new_file(scratch.file("folder")), std::system_error);
-  EXPECT_THROW(tools::make_new_file(scratch.file("missing/a.part")), std::system_error);
+  EXPECT_THROW(experiment::make_new_file(scratch.file("folder")), std::system_error);
+  EXPECT_THROW(experiment::make_new_file(scratch.file("missing/a.part")), std::system_error);
   try {
-    tools::make_part_file(scratch.file("missing/a"), scratch.file("missing/a.part"));
+    experiment::make_part_file(scratch.file("missing/a"), scratch.file("missing/a.part"));
     FAIL();
   } catch (const std::runtime_error& error) {
     EXPECT_EQ(error.what(), scratch.file("missing/a") + ": cannot be written: No such file or directory");

@@ -43,7 +43,7 @@ class MrclamTest : public testing::Test {
     write("Robot2_Measurement.dat", "");
   }
   void write(const std::string& file, const std::string& text) { std::ofstream(folder_.file(file)) << text; }
-  tools::MrclamData read() { return tools::read_mrclam(folder_.file(".")); }
+  experiment::MrclamData read() { return experiment::read_mrclam(folder_.file(".")); }
   /// Messages of a channel in the record.
   template <typename Message>
   std::vector<Message> messages_of(const std::string& channel) {
@@ -58,7 +58,7 @@ class MrclamTest : public testing::Test {
 };
 
 TEST_F(MrclamTest, IsReadWithSubjectsInPlaceOfBarcodes) {
-  const tools::MrclamData data = read();
+  const experiment::MrclamData data = read();
   ASSERT_EQ(data.robots.size(), 2u);
   EXPECT_EQ(data.robots[0].truth.size(), 101u);
   ASSERT_EQ(data.robots[0].measurements.size(), 2u);
@@ -69,7 +69,7 @@ TEST_F(MrclamTest, IsReadWithSubjectsInPlaceOfBarcodes) {
 }
 
 TEST_F(MrclamTest, BecomesARecordThatScoresEstimates) {
-  const tools::MrclamRecord record = tools::write_mrclam_record(read(), folder_.file("run.lcm"), false);
+  const experiment::MrclamRecord record = experiment::write_mrclam_record(read(), folder_.file("run.lcm"), false);
   EXPECT_NEAR(record.duration_s, 10, 1e-9);
   EXPECT_EQ(record.measurements, 2u);
   const auto odometry = messages_of<shoal::odometry_t>("robot1.odometry");
@@ -83,31 +83,31 @@ TEST_F(MrclamTest, BecomesARecordThatScoresEstimates) {
   EXPECT_EQ(seen[1].vehicle[0], "landmark6");
   // An estimate that is 0.3 m north of the true track.
   write("mine.csv", fmt::format("t,x,y\n{:.1f},1.5,2.3\n{:.1f},1.8,2.3\n", start_s + 5, start_s + 8));
-  tools::LogScoreOptions options;
+  experiment::LogScoreOptions options;
   options.log = folder_.file("run.lcm");
   options.estimate = folder_.file("mine.csv");
   options.metric = "robot1";
   options.quiet = true;
-  EXPECT_NEAR(tools::score_log(options).figures.at("robot1.rms_m"), 0.3, 1e-3);
+  EXPECT_NEAR(experiment::score_log(options).figures.at("robot1.rms_m"), 0.3, 1e-3);
 }
 
 TEST_F(MrclamTest, ARobotIsScoredUntilItsTruthEnds) {
   std::string still;
   for (int i = 0; i <= 60; ++i) still += fmt::format("{:.3f} 5.0 2.0 1.5\n", start_s + 0.1 * i);
   write("Robot2_Groundtruth.dat", still);
-  const tools::MrclamData data = read();
-  const std::string world = tools::mrclam_world(data);
+  const experiment::MrclamData data = read();
+  const std::string world = experiment::mrclam_world(data);
   EXPECT_THAT(world, HasSubstr("channel: robot2.estimate, until_s: 6.00}"));
   EXPECT_THAT(world, HasSubstr("channel: robot1.estimate}"));
-  tools::write_mrclam_record(data, folder_.file("run.lcm"), false);
+  experiment::write_mrclam_record(data, folder_.file("run.lcm"), false);
   // 0.4 m wrong while there is a truth; at 8 s its place is unknown.
   write("mine.csv", fmt::format("t,x,y\n{:.1f},5.4,2\n{:.1f},1,2\n", start_s + 5, start_s + 8));
-  tools::LogScoreOptions options;
+  experiment::LogScoreOptions options;
   options.log = folder_.file("run.lcm");
   options.estimate = folder_.file("mine.csv");
   options.metric = "robot2";
   options.quiet = true;
-  const tools::LogScore score = tools::score_log(options);
+  const experiment::LogScore score = experiment::score_log(options);
   EXPECT_NEAR(score.figures.at("robot2.rms_m"), 0.4, 1e-6);
   EXPECT_EQ(score.figures.at("robot2.samples"), 1);
   EXPECT_NEAR(score.figures.at("robot2.max_gap_s"), 5, 0.1);  // from 0 to 5 s; from there to the end of the truth 1 s
@@ -117,10 +117,10 @@ TEST_F(MrclamTest, BeginsWhenThePlacesOfAllRobotsAreKnown) {
   std::string still;
   for (int i = 32; i <= 100; ++i) still += fmt::format("{:.3f} 5.0 2.0 1.5\n", start_s + 0.1 * i);
   write("Robot2_Groundtruth.dat", still);
-  const tools::MrclamRecord record = tools::write_mrclam_record(read(), folder_.file("run.lcm"), false);
+  const experiment::MrclamRecord record = experiment::write_mrclam_record(read(), folder_.file("run.lcm"), false);
   EXPECT_NEAR(record.duration_s, 7, 1e-9);
   // Robot 1 is at x = 1.3 m then, and its dead reckoning begins.
-  EXPECT_THAT(tools::mrclam_world(read()), HasSubstr("name: robot1, position_m: [1.300000, 2.000000, 0]"));
+  EXPECT_THAT(experiment::mrclam_world(read()), HasSubstr("name: robot1, position_m: [1.300000, 2.000000, 0]"));
   const auto odometry = messages_of<shoal::odometry_t>("robot1.odometry");
   ASSERT_FALSE(odometry.empty());
   EXPECT_EQ(odometry.front().utime, static_cast<std::int64_t>((start_s + 3) * 1e6));

@@ -42,7 +42,7 @@ class LogScoreTest : public testing::Test {
  protected:
   LogScoreTest() {
     test::RecordedRun run(scored_sea(), options_.log = folder_.file("run.lcm"));
-    tools::Scoring scoring(run.world);
+    experiment::Scoring scoring(run.world);
     run.run(
         800,
         [&](std::int64_t step) {
@@ -59,26 +59,26 @@ class LogScoreTest : public testing::Test {
     options_.quiet = true;
   }
   /// Scores a file of estimates in place of `mine`.
-  tools::LogScore score(const std::string& text) {
+  experiment::LogScore score(const std::string& text) {
     options_.estimate = folder_.file("mine.csv");
     options_.metric = "mine";
     std::ofstream(options_.estimate) << text;
-    return tools::score_log(options_);
+    return experiment::score_log(options_);
   }
 
   test_support::ScratchFolder folder_;
-  tools::LogScoreOptions options_;
-  tools::Figures live_;
+  experiment::LogScoreOptions options_;
+  experiment::Figures live_;
 };
 
-std::string texts_of(const tools::Figures& figures) {
+std::string texts_of(const experiment::Figures& figures) {
   std::string text;
   for (const auto& [name, value] : figures) text += fmt::format("{} {}\n", name, value);
   return text;
 }
 
 TEST_F(LogScoreTest, HasTheFiguresOfTheRun) {
-  const tools::LogScore score = tools::score_log(options_);
+  const experiment::LogScore score = experiment::score_log(options_);
   EXPECT_EQ(texts_of(score.figures), texts_of(live_));
   EXPECT_EQ(score.figures.at("bound.ranges"), 1);
   EXPECT_NEAR(score.figures.at("ratio.ratio"), 5 / score.figures.at("bound.rms_m"), 1e-3);
@@ -88,7 +88,7 @@ TEST_F(LogScoreTest, HasTheFiguresOfTheRun) {
 }
 
 TEST_F(LogScoreTest, TakesEstimatesOfAFile) {
-  const tools::LogScore scored = score("t,x,y,xx,xy,yy\n1,3,4,1,0,1\n2,0,0,1,0,1\n3,0,7,1,0,1\n");
+  const experiment::LogScore scored = score("t,x,y,xx,xy,yy\n1,3,4,1,0,1\n2,0,0,1,0,1\n3,0,7,1,0,1\n");
   EXPECT_NEAR(scored.figures.at("mine.rms_m"), std::sqrt((25.0 + 0 + 49) / 3), 1e-3);
   EXPECT_NEAR(scored.figures.at("trust.nees_mean"), (25.0 + 0 + 49) / 3, 1e-2);
   EXPECT_EQ(scored.figures.at("mine.samples"), 3);
@@ -111,7 +111,7 @@ TEST_F(LogScoreTest, RefusesAnEstimateWithoutItsMetric) {
     options_.estimate = "none.csv";
     options_.metric = metric;
     try {
-      tools::score_log(options_);
+      experiment::score_log(options_);
       return "none";
     } catch (const std::exception& problem) {
       return problem.what();
@@ -126,7 +126,7 @@ TEST_F(LogScoreTest, RefusesAnEstimateWithoutItsMetric) {
 TEST_F(LogScoreTest, WritesTrajectories) {
   options_.tum = folder_.file("tum");
   options_.mrclam = folder_.file("mrclam");
-  tools::score_log(options_);
+  experiment::score_log(options_);
   const auto text = [](const std::string& path) {
     std::ifstream file(path);
     return std::string(std::istreambuf_iterator<char>(file), {});

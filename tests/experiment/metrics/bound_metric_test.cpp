@@ -49,7 +49,7 @@ struct BoundedWorld {
   double figure(const std::string& name) const { return scoring.figures().at(name); }
 
   test::TestWorld test;
-  tools::Scoring scoring;
+  experiment::Scoring scoring;
 };
 
 TEST(BoundMetric, OfRangesIsThatOfTheirFixes) {
@@ -114,7 +114,7 @@ TEST(BoundMetric, CountsSightsByUSBLOfItsScope) {
       "  - {name: own, type: bound, vehicle: auv, of: received, start_std_m: 10}\n"
       "  - {name: none, type: bound, vehicle: auv, of: alone, start_std_m: 10}\n");
   test::TestWorld test(world);
-  tools::Scoring scoring(test.world);
+  experiment::Scoring scoring(test.world);
   while (test.world.now() < sim::from_seconds(20)) {
     test.world.step();
     scoring.after_step();
@@ -147,14 +147,14 @@ TEST(BoundMetric, GoesBackToWhatWasSaved) {
   world.run_for(2);
   world.send(1);
   auto saver = sim::StateArchive::saver();
-  world.scoring.visit_state(saver, tools::History::whole);
+  world.scoring.visit_state(saver, experiment::History::whole);
   saver.end();
   const sim::Bytes saved = saver.take_bytes();
   const auto before = world.scoring.figures();
   world.send(2);
   EXPECT_NE(world.figure("b.rms_m"), before.at("b.rms_m"));
   auto restorer = sim::StateArchive::restorer(saved);
-  world.scoring.visit_state(restorer, tools::History::whole);
+  world.scoring.visit_state(restorer, experiment::History::whole);
   restorer.end();
   EXPECT_EQ(world.scoring.figures(), before);
 }

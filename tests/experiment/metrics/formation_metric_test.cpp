@@ -37,7 +37,7 @@ struct TwoBoxes {
   double figure(const std::string& name) const { return scoring.figures().at(name); }
 
   test::TestWorld test;
-  tools::Scoring scoring;
+  experiment::Scoring scoring;
 };
 
 TEST(FormationError, IsTheHorizontalDistanceFromThePlaceByTheCourseOfTheLeader) {
@@ -82,7 +82,7 @@ TEST(Separation, IsTheSmallestDistanceOfTwoVehiclesAndItsTime) {
 TEST(Separation, OfASingleVehicleIsNone) {
   test::TestWorld test(test::box_world("        []\n", "{step_s: 0.01, gravity_mps2: 0}",
                                        "metrics: [{name: apart, type: separation}]\n"));
-  tools::Scoring scoring(test.world);
+  experiment::Scoring scoring(test.world);
   test.world.step();
   scoring.after_step();
   EXPECT_TRUE(std::isnan(scoring.figures().at("apart.min_m")));

@@ -32,8 +32,8 @@ struct MappedWorld {
     }
   }
   /// Publishes a map as the true one is now.
-  void publish_truth() { publish(tools::true_map(test.world, frame, 0.3)); }
-  void publish(const tools::GridMap& map) {
+  void publish_truth() { publish(experiment::true_map(test.world, frame, 0.3)); }
+  void publish(const experiment::GridMap& map) {
     shoal::occupancy_grid_t message{};
     message.utime = test.world.epoch_us() + test.world.now().count();
     message.cell_m = frame.cell_m;
@@ -41,8 +41,8 @@ struct MappedWorld {
     message.origin_m[1] = frame.origin_y_m;
     message.width = map.frame.width;
     message.height = map.frame.height;
-    for (const tools::Cell cell : map.cells)
-      message.cells.push_back(cell == tools::Cell::occupied ? 100 : cell == tools::Cell::free ? 0 : -1);
+    for (const experiment::Cell cell : map.cells)
+      message.cells.push_back(cell == experiment::Cell::occupied ? 100 : cell == experiment::Cell::free ? 0 : -1);
     message.ncells = static_cast<std::int32_t>(message.cells.size());
     test.send("map", message);
     step();
@@ -59,9 +59,9 @@ struct MappedWorld {
   sim::Vector3d position_m() const { return test.world.find_vehicle("r1")->X_WV().translation(); }
   double figure(const std::string& name) const { return scoring.figures().at(name); }
 
-  tools::MapFrame frame = tools::frame_of_area({-2, -2, 2, 2}, 0.1);
+  experiment::MapFrame frame = experiment::frame_of_area({-2, -2, 2, 2}, 0.1);
   test::TestWorld test;
-  tools::Scoring scoring;
+  experiment::Scoring scoring;
 };
 
 constexpr const char* map_metric = "  - {name: m, type: map, channel: map, truth_period_s: 0.01}\n";
@@ -82,7 +82,7 @@ TEST(MapMetric, OfTheTrueMapIsOne) {
 
 TEST(MapMetric, ComparesEachMapWithTheTruthOfItsTime) {
   MappedWorld world(map_metric);
-  const tools::GridMap before = tools::true_map(world.test.world, world.frame, 0.3);
+  const experiment::GridMap before = experiment::true_map(world.test.world, world.frame, 0.3);
   world.publish_truth();
   world.test.world.editor().remove_object("crate");
   world.step(100);
@@ -100,7 +100,7 @@ TEST(MapMetric, ComparesEachMapWithTheTruthOfItsTime) {
 TEST(MapMetric, IgnoresMapsOfAnotherFrameAndOtherMessages) {
   MappedWorld world(map_metric);
   world.publish_truth();
-  world.publish(tools::true_map(world.test.world, tools::frame_of_area({-2, -2, 2, 3}, 0.1), 0.3));
+  world.publish(experiment::true_map(world.test.world, experiment::frame_of_area({-2, -2, 2, 3}, 0.1), 0.3));
   world.test.send("map", shoal::estimate_t{});
   world.step();
   EXPECT_EQ(world.figure("m.maps"), 1);
@@ -109,7 +109,7 @@ TEST(MapMetric, IgnoresMapsOfAnotherFrameAndOtherMessages) {
 
 TEST(MapMetric, CountsMapsOfAPeriodAndKnowsWhatChangedBefore) {
   MappedWorld world("  - {name: m, type: map, channel: map, truth_period_s: 0.01, from_s: 0.1, until_s: 0.3}\n");
-  const tools::GridMap before = tools::true_map(world.test.world, world.frame, 0.3);
+  const experiment::GridMap before = experiment::true_map(world.test.world, world.frame, 0.3);
   const double step_s = sim::to_seconds(world.test.world.step_time());
   world.publish(before);
   world.test.world.editor().remove_object("crate");
@@ -128,16 +128,16 @@ TEST(MapMetric, IsRestoredWithItsRun) {
   MappedWorld world(map_metric);
   world.publish_truth();
   sim::StateArchive saver = sim::StateArchive::saver();
-  world.scoring.visit_state(saver, tools::History::whole);
+  world.scoring.visit_state(saver, experiment::History::whole);
   saver.end();
   const auto bytes = saver.take_bytes();
   const auto before = world.scoring.figures();
-  tools::GridMap wrong = tools::true_map(world.test.world, world.frame, 0.3);
-  std::fill(wrong.cells.begin(), wrong.cells.end(), tools::Cell::free);
+  experiment::GridMap wrong = experiment::true_map(world.test.world, world.frame, 0.3);
+  std::fill(wrong.cells.begin(), wrong.cells.end(), experiment::Cell::free);
   world.publish(wrong);
   EXPECT_NE(world.figure("m.maps"), before.at("m.maps"));
   sim::StateArchive restorer = sim::StateArchive::restorer(bytes);
-  world.scoring.visit_state(restorer, tools::History::whole);
+  world.scoring.visit_state(restorer, experiment::History::whole);
   EXPECT_EQ(world.figure("m.maps"), before.at("m.maps"));
   EXPECT_EQ(world.figure("m.iou"), before.at("m.iou"));
 }

@@ -13,21 +13,21 @@
 
 namespace {
 
-using Function = std::function<double(const tools::Point&)>;
+using Function = std::function<double(const experiment::Point&)>;
 
 /// Point of the optimum, away from the center of the box.
 double optimum(std::size_t i) {
   return 0.3 + 0.04 * static_cast<double>(i);
 }
 
-double sphere(const tools::Point& x) {
+double sphere(const experiment::Point& x) {
   double sum = 0;
   for (std::size_t i = 0; i < x.size(); ++i) sum += std::pow(x[i] - optimum(i), 2);
   return sum;
 }
 
 /// Axes of condition 1e6.
-double ellipsoid(const tools::Point& x) {
+double ellipsoid(const experiment::Point& x) {
   double sum = 0;
   for (std::size_t i = 0; i < x.size(); ++i)
     sum +=
@@ -36,7 +36,7 @@ double ellipsoid(const tools::Point& x) {
 }
 
 /// Rosenbrock's function of -2 to 2 in each coordinate; its optimum is at 1.
-double rosenbrock(const tools::Point& x) {
+double rosenbrock(const experiment::Point& x) {
   double sum = 0;
   const auto at = [&](std::size_t i) { return 4 * x[i] - 2; };
   for (std::size_t i = 0; i + 1 < x.size(); ++i)
@@ -45,12 +45,12 @@ double rosenbrock(const tools::Point& x) {
 }
 
 /// Returns the evaluations until the cost is below `target`; `max_count` when it never is.
-int evaluations(tools::Optimizer& optimizer, const Function& cost, double target, int max_count) {
+int evaluations(experiment::Optimizer& optimizer, const Function& cost, double target, int max_count) {
   int count = 0;
   while (count < max_count) {
-    const std::vector<tools::Point> points = optimizer.propose();
+    const std::vector<experiment::Point> points = optimizer.propose();
     std::vector<double> values;
-    for (const tools::Point& point : points) {
+    for (const experiment::Point& point : points) {
       ++count;
       const double one = cost(point);
       if (one < target) return count;
@@ -64,7 +64,7 @@ int evaluations(tools::Optimizer& optimizer, const Function& cost, double target
 int median_evaluations(const Function& cost, std::size_t n, int max_count) {
   std::vector<int> counts;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    tools::CmaEs optimizer(tools::Point(n, 0.5), {.seed = seed});
+    experiment::CmaEs optimizer(experiment::Point(n, 0.5), {.seed = seed});
     counts.push_back(evaluations(optimizer, cost, 1e-9, max_count));
   }
   std::nth_element(counts.begin(), counts.begin() + 2, counts.end());
@@ -87,35 +87,36 @@ TEST(CmaEs, FollowsTheValleyOfRosenbrock) {
 }
 
 TEST(CmaEs, FindsAnOptimumAtTheEdgeOfTheBox) {
-  const auto towards_edge = [](const tools::Point& x) {
+  const auto towards_edge = [](const experiment::Point& x) {
     double sum = 0;
     for (const double one : x) sum += 1 - one;
     return sum;
   };
-  tools::CmaEs optimizer(tools::Point(6, 0.5), {.population = 16});
+  experiment::CmaEs optimizer(experiment::Point(6, 0.5), {.population = 16});
   EXPECT_LT(evaluations(optimizer, towards_edge, 1e-2, 20000), 3000);
 }
 
 TEST(GeneticAlgorithm, FindsTheOptimumOfASphere) {
   // 1e-3 is 0.01 in each of ten coordinates.  538 evaluations when this was written.
-  tools::GeneticAlgorithm optimizer(tools::Point(10, 0.5), {});
+  experiment::GeneticAlgorithm optimizer(experiment::Point(10, 0.5), {});
   EXPECT_LT(evaluations(optimizer, sphere, 1e-3, 20000), 810);
 }
 
-std::unique_ptr<tools::Optimizer> made(bool genetic, std::uint64_t seed) {
+std::unique_ptr<experiment::Optimizer> made(bool genetic, std::uint64_t seed) {
   // A start in a corner and large steps: most samples are outside of the box.
   if (genetic)
-    return std::make_unique<tools::GeneticAlgorithm>(tools::Point(5, 0.0),
-                                                     tools::GeneticAlgorithm::Options{.sigma = 2, .seed = seed});
-  return std::make_unique<tools::CmaEs>(tools::Point(5, 0.0), tools::CmaEs::Options{.sigma = 1, .seed = seed});
+    return std::make_unique<experiment::GeneticAlgorithm>(
+        experiment::Point(5, 0.0), experiment::GeneticAlgorithm::Options{.sigma = 2, .seed = seed});
+  return std::make_unique<experiment::CmaEs>(experiment::Point(5, 0.0),
+                                             experiment::CmaEs::Options{.sigma = 1, .seed = seed});
 }
 
-std::vector<tools::Point> course(bool genetic, std::uint64_t seed) {
+std::vector<experiment::Point> course(bool genetic, std::uint64_t seed) {
   const auto optimizer = made(genetic, seed);
-  std::vector<tools::Point> all;
+  std::vector<experiment::Point> all;
   for (int generation = 0; generation < 20; ++generation) {
     std::vector<double> values;
-    for (tools::Point& point : optimizer->propose()) {
+    for (experiment::Point& point : optimizer->propose()) {
       values.push_back(-sphere(point));
       all.push_back(std::move(point));
     }
@@ -126,7 +127,7 @@ std::vector<tools::Point> course(bool genetic, std::uint64_t seed) {
 
 TEST(Optimizers, KeepTheirPointsInTheBox) {
   for (const bool genetic : {false, true})
-    for (const tools::Point& point : course(genetic, 1))
+    for (const experiment::Point& point : course(genetic, 1))
       for (const double x : point) EXPECT_TRUE(x >= 0 && x <= 1) << x;
 }
 
@@ -138,15 +139,15 @@ TEST(Optimizers, ASeedGivesTheSameCourse) {
 }
 
 TEST(Optimizers, ReflectAtBothSidesOfTheBox) {
-  EXPECT_DOUBLE_EQ(tools::reflected(0.25), 0.25);
-  EXPECT_DOUBLE_EQ(tools::reflected(-0.25), 0.25);
-  EXPECT_DOUBLE_EQ(tools::reflected(1.25), 0.75);
-  EXPECT_DOUBLE_EQ(tools::reflected(-3.75), 0.25);
-  EXPECT_DOUBLE_EQ(tools::reflected(2.25), 0.25);
+  EXPECT_DOUBLE_EQ(experiment::reflected(0.25), 0.25);
+  EXPECT_DOUBLE_EQ(experiment::reflected(-0.25), 0.25);
+  EXPECT_DOUBLE_EQ(experiment::reflected(1.25), 0.75);
+  EXPECT_DOUBLE_EQ(experiment::reflected(-3.75), 0.25);
+  EXPECT_DOUBLE_EQ(experiment::reflected(2.25), 0.25);
 }
 
 TEST(Optimizers, RankEqualValuesByTheirPlace) {
-  EXPECT_EQ(tools::by_rank(std::vector<double>{1, 3, 3, 2}), (std::vector<std::size_t>{1, 2, 3, 0}));
+  EXPECT_EQ(experiment::by_rank(std::vector<double>{1, 3, 3, 2}), (std::vector<std::size_t>{1, 2, 3, 0}));
 }
 
 }  // namespace

@@ -52,20 +52,21 @@ struct ExitWarning : spdlog::sinks::base_sink<std::mutex> {
 };
 
 TEST(BrowserCommand, IsXdgOpenUnlessTheUserHasChosenAnother) {
-  EXPECT_THAT(tools::browser_command("", url), ElementsAre("xdg-open", url));
-  EXPECT_THAT(tools::browser_command(" ", url), ElementsAre("xdg-open", url));
-  EXPECT_THAT(tools::browser_command("firefox", url), ElementsAre("firefox", url));
+  EXPECT_THAT(experiment::browser_command("", url), ElementsAre("xdg-open", url));
+  EXPECT_THAT(experiment::browser_command(" ", url), ElementsAre("xdg-open", url));
+  EXPECT_THAT(experiment::browser_command("firefox", url), ElementsAre("firefox", url));
 }
 
 TEST(BrowserCommand, HasTheAddressAtItsPlaceAndIsTheFirstOfAList) {
-  EXPECT_THAT(tools::browser_command("firefox  --new-window %s --safe:lynx", url),
+  EXPECT_THAT(experiment::browser_command("firefox  --new-window %s --safe:lynx", url),
               ElementsAre("firefox", "--new-window", url, "--safe"));
-  EXPECT_THAT(tools::browser_command("chromium --app=%s", url), ElementsAre("chromium", std::string("--app=") + url));
+  EXPECT_THAT(experiment::browser_command("chromium --app=%s", url),
+              ElementsAre("chromium", std::string("--app=") + url));
 }
 
 TEST_F(BrowserTest, ReceivesTheAddressAsOneArgumentThatNoShellReads) {
   set_browser("printf '%s %s\\n' $# \"$1\" > " + folder_.file("shown"));
-  tools::Browser browser;
+  experiment::Browser browser;
   browser.open(url);
   EXPECT_TRUE(lcm_test::await([&] { return shown() == std::string("1 ") + url + "\n"; })) << shown();
 }
@@ -73,7 +74,7 @@ TEST_F(BrowserTest, ReceivesTheAddressAsOneArgumentThatNoShellReads) {
 TEST_F(BrowserTest, ThatDoesNotExistIsAWarning) {
   const test_support::LogCapture log;
   setenv("BROWSER", "/nowhere/browser", 1);
-  tools::Browser().open(url);
+  experiment::Browser().open(url);
   EXPECT_THAT(log.text(), HasSubstr("--open: cannot start '/nowhere/browser': No such file or directory"));
 }
 
@@ -83,7 +84,7 @@ TEST_F(BrowserTest, ThatFailsIsAWarning) {
   spdlog::set_default_logger(std::make_shared<spdlog::logger>("capture", sink));
   set_browser("exit 3");
   {
-    tools::Browser browser;
+    experiment::Browser browser;
     browser.open(url);
     EXPECT_TRUE(lcm_test::await([&] { return sink->seen.load(); }));
   }
@@ -92,7 +93,7 @@ TEST_F(BrowserTest, ThatFailsIsAWarning) {
 
 TEST_F(BrowserTest, ThatStaysOpenDoesNotDelayTheEnd) {
   set_browser("echo > " + folder_.file("shown") + "\nexec sleep 3");
-  tools::Browser browser;
+  experiment::Browser browser;
   browser.open(url);
   EXPECT_TRUE(lcm_test::await([&] { return shown() == "\n"; }));
 }

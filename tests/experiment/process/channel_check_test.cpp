@@ -17,7 +17,7 @@ struct PilotWorld {
   explicit PilotWorld(const std::string& more = "")
       : loaded(sim::load_world_text("shoal: 1\nmedium: {water: {}}\nvehicles:\n" + boat("a1", 0) + boat("a2", 9) + more,
                                     "worlds/test.yaml", test::LoadedTestWorld::with_messages({}))) {
-    tools::read_programs(loaded, {true, {}, {test_support::built_path("bin")}});
+    experiment::read_programs(loaded, {true, {}, {test_support::built_path("bin")}});
   }
   static std::string boat(const std::string& name, int east_m) {
     return "  - {name: " + name + ", position_m: [" + std::to_string(east_m) +
@@ -35,7 +35,7 @@ struct PilotWorld {
       world.editor().add_vehicle(instance);
     }
     sim::Warnings warnings;
-    tools::warn_of_channels(loaded, world, use, is_recorded, warnings);
+    experiment::warn_of_channels(loaded, world, use, is_recorded, warnings);
     return warnings.lines();
   }
   void publishes(const std::string& channel, bool is_read = false) { use.add_published("pilot", channel, is_read); }

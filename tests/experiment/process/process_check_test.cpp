@@ -27,7 +27,7 @@ sim::LoadedWorld world(const std::vector<std::pair<std::string, std::string>>& p
             "], model: {shoal: 1, vehicle: ball, bodies: [{name: hull, parts: [{shape: sphere, mass_kg: 1}]}]}}\n";
   sim::LoadedWorld loaded =
       sim::load_world_text(yaml + more, "worlds/test.yaml", test::LoadedTestWorld::with_messages({}));
-  tools::read_programs(loaded, {true, {}, {test_support::built_path("bin")}});
+  experiment::read_programs(loaded, {true, {}, {test_support::built_path("bin")}});
   return loaded;
 }
 
@@ -36,7 +36,7 @@ std::string warnings_of(const std::vector<std::pair<std::string, std::string>>& 
   const sim::LoadedWorld loaded = world(processes, more);
   const test_support::LogCapture log;
   sim::Warnings warnings;
-  tools::warn_of_processes(loaded, warnings);
+  experiment::warn_of_processes(loaded, warnings);
   return log.text();
 }
 
@@ -115,7 +115,7 @@ TEST(ProcessCheck, ReportsAProgramThatIsNotThere) {
     const sim::LoadedWorld loaded = world({{"auv", "command: [" + program + "]"}});
     const test_support::LogCapture log;
     sim::Warnings warnings;
-    tools::warn_of_missing_programs(loaded, warnings);
+    experiment::warn_of_missing_programs(loaded, warnings);
     return log.text();
   };
   EXPECT_EQ(missing("shoal-coop-auw, --name, auv"),
@@ -130,7 +130,7 @@ TEST(ProcessCheck, HintsAtADeclarationThatACommandDoesNotUse) {
     const sim::LoadedWorld loaded = world({{"auv", program}});
     const test_support::LogCapture log;
     sim::Warnings warnings;
-    tools::warn_of_unchecked_arguments(loaded, warnings);
+    experiment::warn_of_unchecked_arguments(loaded, warnings);
     return log.text();
   };
   EXPECT_EQ(hint("command: [" + test_support::built_path("bin/shoal-coop-auv") + ", --name, auv]"),

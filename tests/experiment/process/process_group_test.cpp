@@ -22,8 +22,8 @@ sim::ProcessConfig shell(const std::string& script, const std::string& name = "w
   return config;
 }
 
-std::vector<tools::ProcessGroup::Exit> await_exit(tools::ProcessGroup& group) {
-  std::vector<tools::ProcessGroup::Exit> exits;
+std::vector<experiment::ProcessGroup::Exit> await_exit(experiment::ProcessGroup& group) {
+  std::vector<experiment::ProcessGroup::Exit> exits;
   await([&] { return !(exits = group.reap()).empty(); });
   return exits;
 }
@@ -50,7 +50,7 @@ bool is_running(pid_t pid) {
 }
 
 TEST(ProcessGroup, ReportsHowAProgramEnded) {
-  tools::ProcessGroup group;
+  experiment::ProcessGroup group;
   sim::ProcessConfig config = shell("exit 3", "pilot");
   config.client = "auv1";
   config.on_exit = sim::OnExit::end_run;
@@ -66,7 +66,7 @@ TEST(ProcessGroup, ReportsHowAProgramEnded) {
 }
 
 TEST(ProcessGroup, ReportsWhatKilledAProgram) {
-  tools::ProcessGroup group;
+  experiment::ProcessGroup group;
   group.start(shell("kill -9 $$"), "memq://", "");
   const auto exits = await_exit(group);
   ASSERT_EQ(exits.size(), 1u);
@@ -75,7 +75,7 @@ TEST(ProcessGroup, ReportsWhatKilledAProgram) {
 }
 
 TEST(ProcessGroup, EndingWellIsNoFailure) {
-  tools::ProcessGroup group;
+  experiment::ProcessGroup group;
   group.start(shell("exit 0"), "memq://", "");
   const auto exits = await_exit(group);
   ASSERT_EQ(exits.size(), 1u);
@@ -84,7 +84,7 @@ TEST(ProcessGroup, EndingWellIsNoFailure) {
 }
 
 TEST(ProcessGroup, NamesAProgramThatCannotBeStarted) {
-  tools::ProcessGroup group;
+  experiment::ProcessGroup group;
   sim::ProcessConfig config;
   config.name = "pilot";
   config.command = {"no-such-program"};
@@ -99,7 +99,7 @@ TEST(ProcessGroup, NamesAProgramThatCannotBeStarted) {
 
 TEST(ProcessGroup, HandsOverTheLcmUrlAndKeepsALog) {
   const ScratchFolder folder;
-  tools::ProcessGroup group;
+  experiment::ProcessGroup group;
   sim::ProcessConfig config = shell("echo \"$LCM_DEFAULT_URL $1\"; echo oops >&2; cat", "pilot");
   config.command.insert(config.command.end(), {"sh", "--url={lcm_url}"});
   group.start(config, "udpm://239.255.76.67:7000?ttl=0", folder.file(""));
@@ -112,7 +112,7 @@ TEST(ProcessGroup, GivesProgramsTheUsualSignals) {
   // shoal itself ignores SIGPIPE; `yes` must not inherit that, or it would warn.
   const ScratchFolder folder;
   const auto before = signal(SIGPIPE, SIG_IGN);
-  tools::ProcessGroup group;
+  experiment::ProcessGroup group;
   group.start(shell("yes | head -n 1"), "memq://", folder.file(""));
   await_exit(group);
   signal(SIGPIPE, before);
@@ -121,7 +121,7 @@ TEST(ProcessGroup, GivesProgramsTheUsualSignals) {
 
 TEST(ProcessGroup, EndsChildrenOfChildren) {
   const ScratchFolder folder;
-  tools::ProcessGroup group;
+  experiment::ProcessGroup group;
   group.start(shell("sleep 1000 & echo $! > " + folder.file("child") + "; wait"), "memq://", "");
   const pid_t child = std::stoi(await_line(folder.file("child")));
   EXPECT_TRUE(is_running(child));
@@ -132,7 +132,7 @@ TEST(ProcessGroup, EndsChildrenOfChildren) {
 
 TEST(ProcessGroup, EndsChildrenThatAProgramLeftBehind) {
   const ScratchFolder folder;
-  tools::ProcessGroup group;
+  experiment::ProcessGroup group;
   group.start(shell("sleep 1000 & echo $! > " + folder.file("child")), "memq://", "");
   const pid_t child = std::stoi(await_line(folder.file("child")));
   await_exit(group);
@@ -146,7 +146,7 @@ std::string deaf_child(const std::string& file, const std::string& then) {
 
 TEST(ProcessGroup, KillsChildrenThatDoNotListen) {
   const ScratchFolder folder;
-  tools::ProcessGroup group;
+  experiment::ProcessGroup group;
   group.start(shell(deaf_child(folder.file("child"), "sleep 1001")), "memq://", "");
   const pid_t child = std::stoi(await_line(folder.file("child")));
   const auto begin = std::chrono::steady_clock::now();
@@ -158,7 +158,7 @@ TEST(ProcessGroup, KillsChildrenThatDoNotListen) {
 
 TEST(ProcessGroup, KillsDeafChildrenOfAProgramThatIsLongGone) {
   const ScratchFolder folder;
-  tools::ProcessGroup group;
+  experiment::ProcessGroup group;
   const std::string file = folder.file("child");
   // The parent goes when the child has said its number: from then on it is deaf.
   group.start(shell(deaf_child(file, "until [ -s " + file + " ]; do sleep 0.01; done")), "memq://", "");
@@ -175,7 +175,7 @@ TEST(ProcessGroup, KillsWhatDoesNotListen) {
   pid_t pid = 0;
   const auto begin = std::chrono::steady_clock::now();
   {
-    tools::ProcessGroup group;
+    experiment::ProcessGroup group;
     group.start(shell("trap '' TERM; echo $$ > " + folder.file("pid") + "; while true; do sleep 0.1; done"), "memq://",
                 "");
     pid = std::stoi(await_line(folder.file("pid")));

@@ -36,7 +36,7 @@ class WorldPrograms : public testing::Test {
   }
   sim::LoadedWorld read(const std::string& processes, const std::vector<std::string>& sets = {}) {
     sim::LoadedWorld loaded = load(processes, sets);
-    tools::read_programs(loaded, {true, {(folder_ / "mine").string()}, {folder_.string()}});
+    experiment::read_programs(loaded, {true, {(folder_ / "mine").string()}, {folder_.string()}});
     return loaded;
   }
   std::vector<std::string> errors(const std::string& processes, const std::vector<std::string>& sets = {}) {
@@ -93,7 +93,7 @@ TEST_F(WorldPrograms, AProgramWithoutADeclarationIsNamedWithWhereItWasLookedFor)
   EXPECT_THAT(errors("  - {name: p, program: ./navigator}\n"),
               ElementsAre(HasSubstr("no declaration './navigator.args.yaml'; 'command: [./navigator, ...]' takes")));
   sim::LoadedWorld loaded = load("  - {name: p, program: navigator}\n");
-  tools::read_programs(loaded, {false, {}, {folder_.string()}});
+  experiment::read_programs(loaded, {false, {}, {folder_.string()}});
   EXPECT_THAT(loaded.config.processes[0].command, ElementsAre());
 }
 

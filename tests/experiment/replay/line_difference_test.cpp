@@ -6,9 +6,9 @@
 
 namespace {
 
+using experiment::line_difference;
 using testing::ElementsAre;
 using testing::IsEmpty;
-using tools::line_difference;
 
 TEST(LineDifference, EqualTextsHaveNone) {
   EXPECT_THAT(line_difference("a\nb\n", "a\nb\n"), IsEmpty());

@@ -13,10 +13,10 @@
 
 namespace {
 
+using experiment::PlayedAnswers;
+using experiment::ReplayLog;
 using testing::ElementsAre;
 using testing::IsEmpty;
-using tools::PlayedAnswers;
-using tools::ReplayLog;
 
 sim::Bytes command(double forward_mps) {
   shoal::twist_command_t message{};
@@ -106,7 +106,7 @@ TEST(RecordedSteps, GiveInputsBeforeTheStepThatTheyCameTo) {
   }
   log.inputs.push_back({0, "", "cmd", bytes('c')});
 
-  tools::RecordedSteps steps(log);
+  experiment::RecordedSteps steps(log);
   const auto texts = [&](auto&& give) {
     std::vector<std::string> all;
     give([&](std::string_view channel, std::span<const std::byte> payload) {

@@ -12,7 +12,7 @@
 namespace {
 
 using bridges::LogEventView;
-using tools::ReadAhead;
+using experiment::ReadAhead;
 
 class ReadAheadTest : public testing::Test {
  protected:

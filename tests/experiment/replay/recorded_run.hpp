@@ -25,7 +25,7 @@ namespace test {
 class RecordedRun {
  public:
   /// `from`: it begins with this snapshot, of a RecordedRun of the same world.
-  RecordedRun(const std::string& yaml, const std::string& log, const tools::Snapshot* from = nullptr)
+  RecordedRun(const std::string& yaml, const std::string& log, const experiment::Snapshot* from = nullptr)
       : loaded(sim::load_world_text(yaml, "worlds/test.yaml", LoadedTestWorld::with_messages({}))),
         recorder(network, log, loaded.config.epoch_us),
         gate(recorder),
@@ -35,8 +35,8 @@ class RecordedRun {
         })),
         journal(gate, world, ports),
         service(gate, network, world, control, lockstep,
-                {sim::to_yaml(loaded.resolved), tools::version_text(), tools::build_text(),
-                 tools::files_text(loaded.resolved)},
+                {sim::to_yaml(loaded.resolved), experiment::version_text(), experiment::build_text(),
+                 experiment::files_text(loaded.resolved)},
                 {.journal = &journal}) {
     if (from != nullptr) {
       world.state().restore(from->state);
@@ -48,13 +48,13 @@ class RecordedRun {
     }
     service.publish_info();
     if (from != nullptr)
-      for (const auto& piece : tools::in_pieces(*from, 0, 1))
+      for (const auto& piece : experiment::in_pieces(*from, 0, 1))
         gate.publish("sim.snapshot", shoal::encode(piece), world.now());
   }
 
-  tools::Snapshot snapshot() {
-    tools::Snapshot s;
-    s.version = tools::short_version();
+  experiment::Snapshot snapshot() {
+    experiment::Snapshot s;
+    s.version = experiment::short_version();
     s.resolved_world = sim::to_yaml(loaded.resolved);
     s.seed = loaded.config.run.seed;
     s.epoch_us = world.epoch_us();

@@ -53,13 +53,13 @@ class ReplayTest : public testing::Test {
     std::filesystem::resize_file(log, bytes);
   }
 
-  tools::ReplayOutcome again(const std::vector<std::string>& sets = {}) const {
-    tools::ReplayOptions options;
+  experiment::ReplayOutcome again(const std::vector<std::string>& sets = {}) const {
+    experiment::ReplayOptions options;
     options.log = log;
     options.load.sets = sets;
     options.quiet = true;
     options.threads = 1;
-    return tools::replay(options);
+    return experiment::replay(options);
   }
 
   std::string error() const {

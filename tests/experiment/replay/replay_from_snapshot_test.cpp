@@ -10,6 +10,9 @@
 
 namespace {
 
+using experiment::replay;
+using experiment::ReplayOptions;
+using experiment::ReplayOutcome;
 using test::driven_world;
 using test::forward;
 using test::RecordedRun;
@@ -18,9 +21,6 @@ using test::steps;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
-using tools::replay;
-using tools::ReplayOptions;
-using tools::ReplayOutcome;
 
 /// A run of 100 steps, in which a guest comes; a record that begins there.
 class ReplayFromASnapshot : public ReplayTest {
@@ -61,7 +61,7 @@ class ReplayFromASnapshot : public ReplayTest {
     });
   }
 
-  tools::Snapshot begin;
+  experiment::Snapshot begin;
 };
 
 TEST_F(ReplayFromASnapshot, IsEqualFromThereOn) {

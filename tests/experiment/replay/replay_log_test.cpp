@@ -66,11 +66,11 @@ class HandMade {
   /// All pieces but those of the numbers in `lost`.
   void snapshot(std::int32_t branch, std::int64_t step, std::int64_t input_sequence,
                 const std::set<std::int32_t>& lost = {}) {
-    tools::Snapshot snapshot;
+    experiment::Snapshot snapshot;
     snapshot.step = step;
     snapshot.step_us = step_us;
     snapshot.state = sim::Bytes(150'000, std::byte{1});
-    for (const auto& piece : tools::in_pieces(snapshot, branch, input_sequence))
+    for (const auto& piece : experiment::in_pieces(snapshot, branch, input_sequence))
       if (!lost.contains(piece.piece)) publish("sim.snapshot", piece, step);
   }
   template <typename Message>
@@ -80,9 +80,9 @@ class HandMade {
   void raw(const std::string& channel, const sim::Bytes& payload, std::int64_t step) {
     bus_.publish(channel, payload, sim::Time(step * step_us));
   }
-  tools::ReplayLog read() {
+  experiment::ReplayLog read() {
     bus_.close();
-    return tools::read_replay_log(path_);
+    return experiment::read_replay_log(path_);
   }
 
  private:
@@ -99,7 +99,7 @@ TEST(ReplayLog, WhatIsMissingOfAPartThatWasLeftIsNotMissed) {
   log.input_record(0, 30, 2);  // 1 is missing, and came after step 10: the branch there begins with 1
   log.info(1, 10, 1);
   log.input_record(1, 20, 1);
-  const tools::ReplayLog read = log.read();
+  const experiment::ReplayLog read = log.read();
   EXPECT_THAT(read.holes, IsEmpty());
   EXPECT_EQ(read.usable_step(), 20);
   EXPECT_EQ(read.inputs.size(), 2u);
@@ -112,7 +112,7 @@ TEST(ReplayLog, WhatIsMissingOfThePartThatIsKeptEndsTheProof) {
   log.input_record(0, 30, 3);  // 1 and 2 are missing: 1 came up to step 10
   log.info(1, 10, 2);
   log.input_record(1, 20, 2);
-  const tools::ReplayLog read = log.read();
+  const experiment::ReplayLog read = log.read();
   EXPECT_THAT(read.holes, ElementsAre("sim.inputs 1 (of a step from 5 to 30) is missing"));
   EXPECT_EQ(read.usable_step(), 5);
 }
@@ -123,7 +123,7 @@ TEST(ReplayLog, InputsThatWereLostJustBeforeABranchEndTheProof) {
   log.input_record(0, 5, 0);
   log.info(1, 10, 2);
   log.input_record(1, 20, 2);
-  const tools::ReplayLog read = log.read();
+  const experiment::ReplayLog read = log.read();
   EXPECT_THAT(read.holes, ElementsAre("sim.inputs 1 (of a step from 5 to 10) is missing"));
   EXPECT_EQ(read.usable_step(), 5);
 }
@@ -135,7 +135,7 @@ TEST(ReplayLog, BeginsWithTheSnapshotOfARun) {
   log.state(100);
   log.input_record(0, 110, 1);
   log.hash(0, 120, 2);
-  const tools::ReplayLog read = log.read();
+  const experiment::ReplayLog read = log.read();
   EXPECT_EQ(read.begin_step(), 100);
   EXPECT_EQ(read.usable_step(), 120);
   EXPECT_EQ(read.inputs.size(), 1u);
@@ -157,7 +157,7 @@ TEST(ReplayLog, BeginsWithTheLastSnapshotOfALogOverARestore) {
     log.state(to);
     log.input_record(1, to + 10, 5);
     log.hash(1, to + 20, 6);
-    const tools::ReplayLog read = log.read();
+    const experiment::ReplayLog read = log.read();
     EXPECT_EQ(read.begin_step(), to);
     EXPECT_EQ(read.usable_step(), to + 20);
     EXPECT_EQ(read.inputs.size(), 1u);
@@ -176,7 +176,7 @@ TEST(ReplayLog, ASnapshotThatLacksAPieceEndsTheProof) {
   log.info(1, 300, 2);  // number 1 was skipped
   log.snapshot(1, 300, 2, {1});
   log.input_record(1, 310, 2);
-  const tools::ReplayLog read = log.read();
+  const experiment::ReplayLog read = log.read();
   EXPECT_EQ(read.begin_step(), 0);
   EXPECT_EQ(read.usable_step(), 30);
   EXPECT_EQ(read.bad_snapshot, "sim.snapshot: piece 2 of 3 of the snapshot of step 300 is missing");
@@ -189,7 +189,7 @@ TEST(ReplayLog, GoesBackBehindItsSnapshotOnlyWithAnother) {
   log.state(120);
   log.info(1, 50, 1);
   log.input_record(1, 60, 1);
-  const tools::ReplayLog read = log.read();
+  const experiment::ReplayLog read = log.read();
   EXPECT_FALSE(read.snapshot);
   EXPECT_EQ(read.bad_snapshot, "sim.snapshot: the log is rewound to step 50, before its snapshot");
   EXPECT_EQ(read.usable_step(), 0);  // no one knows what came before
@@ -202,7 +202,7 @@ TEST(ReplayLog, EndsWithTheLastStepOfWhichAllIsThere) {
   record.input_record(0, 5, 0);
   record.raw("r1.odometry", sim::Bytes(8), 40);
   record.state(41);
-  const tools::ReplayLog read = record.read();
+  const experiment::ReplayLog read = record.read();
   EXPECT_EQ(read.usable_step(), 40) << "in a record all of a step stands before anything of the next";
   EXPECT_EQ(read.cut, "the log ends in the middle of step 41: everything after step 40 is left out");
   // As lcm-logger stamps: the sim.inputs of any step behind the last one may have been lost.
@@ -219,7 +219,7 @@ TEST(ReplayLog, EndsWithTheLastStepOfWhichAllIsThere) {
   logged.state(40);
   logged.info(0, 60, 1);
   logged.state(61);
-  const tools::ReplayLog other = logged.read();
+  const experiment::ReplayLog other = logged.read();
   EXPECT_FALSE(other.own_stamps);
   EXPECT_EQ(other.usable_step(), 59) << "the inputs of step 60 come behind its sim.info";
   EXPECT_EQ(other.cut, "the log ends in the middle of step 61: everything after step 59 is left out");
@@ -240,8 +240,8 @@ TEST(ReplayMessages, ARecordIsNotReadAheadOfTheStep) {
   for (std::int64_t step = 1; step <= 100; ++step) log.raw("often", late, step);
   log.raw("rare", late, 100);
   log.info(0, 101, 0);
-  const tools::ReplayLog read = log.read();
-  tools::ReplayMessages messages(read);
+  const experiment::ReplayLog read = log.read();
+  experiment::ReplayMessages messages(read);
   messages.published("rare", early, 1);  // which is 100 steps before the log's
   ASSERT_NE(messages.first(), nullptr);
   EXPECT_EQ(messages.first()->what, "was published here and is not in the log");

@@ -21,6 +21,9 @@
 
 namespace {
 
+using experiment::replay;
+using experiment::ReplayOptions;
+using experiment::ReplayOutcome;
 using test::driven_world;
 using test::forward;
 using test::RecordedRun;
@@ -29,9 +32,6 @@ using test::steps;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using tools::replay;
-using tools::ReplayOptions;
-using tools::ReplayOutcome;
 
 TEST_F(ReplayTest, ARunWithAClientIsEqualWithoutIt) {
   record(driven_world());

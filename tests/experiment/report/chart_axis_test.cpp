@@ -10,11 +10,11 @@ namespace {
 using testing::ElementsAre;
 
 std::vector<std::string> texts_of(const std::vector<double>& values, bool log = false) {
-  tools::ChartAxis axis(log);
+  experiment::ChartAxis axis(log);
   for (const double value : values) axis.add(value);
   const std::vector<double> ticks = axis.ticks();
   std::vector<std::string> texts;
-  for (const double tick : ticks) texts.push_back(tools::tick_text(ticks, tick));
+  for (const double tick : ticks) texts.push_back(experiment::tick_text(ticks, tick));
   return texts;
 }
 
@@ -43,7 +43,7 @@ TEST(ChartAxis, LogarithmicTicksAreRoundNumbersThemselves) {
 }
 
 TEST(ChartAxis, IsEmptyWithoutFiniteValues) {
-  tools::ChartAxis axis, log(true);
+  experiment::ChartAxis axis, log(true);
   axis.add(std::nan(""));
   log.add(-1);
   EXPECT_TRUE(axis.empty());
@@ -51,8 +51,8 @@ TEST(ChartAxis, IsEmptyWithoutFiniteValues) {
 }
 
 TEST(ChartAxis, SharesAreThoseOfTheRangeOfTicks) {
-  EXPECT_DOUBLE_EQ(tools::share_of_axis({0, 2, 4}, false, 1), 0.25);
-  EXPECT_DOUBLE_EQ(tools::share_of_axis({1, 10, 100}, true, 10), 0.5);
+  EXPECT_DOUBLE_EQ(experiment::share_of_axis({0, 2, 4}, false, 1), 0.25);
+  EXPECT_DOUBLE_EQ(experiment::share_of_axis({1, 10, 100}, true, 10), 0.5);
 }
 
 }  // namespace

@@ -34,21 +34,21 @@ std::string text_of_file(const std::string& path) {
 }
 
 /// A run of a small world, whose results are left in a folder.
-tools::Summary run_into(const std::string& directory, const std::string& more, const std::string& name = "small") {
+experiment::Summary run_into(const std::string& directory, const std::string& more, const std::string& name = "small") {
   auto loaded = sim::load_world_text(
       test::rover_world("        - {name: lidar, type: lidar}\n", "", "", "run: {duration_s: 0.2, seed: 7}\n" + more),
       "small.yaml");
   loaded.config.name = name;
-  tools::RunOptions options;
+  experiment::RunOptions options;
   options.bus = "none";
   options.quiet = true;
   options.results = directory;
-  return tools::run_world(loaded, options);
+  return experiment::run_world(loaded, options);
 }
 
 std::string error_of_report(const std::vector<std::string>& directories) {
   try {
-    tools::report_page(directories);
+    experiment::report_page(directories);
     return {};
   } catch (const std::runtime_error& error) {
     return error.what();
@@ -95,42 +95,42 @@ print("; ".join(checker.problems), end="")
 }
 
 TEST(Html, TextStaysText) {
-  EXPECT_EQ(tools::html_text("a < b & c > \"d\" 'e'"), "a &lt; b &amp; c &gt; &quot;d&quot; &#39;e&#39;");
-  EXPECT_EQ(tools::html_text("na\xc3\xafve \xe2\x82\xac \xf0\x9f\x90\x9f"),
+  EXPECT_EQ(experiment::html_text("a < b & c > \"d\" 'e'"), "a &lt; b &amp; c &gt; &quot;d&quot; &#39;e&#39;");
+  EXPECT_EQ(experiment::html_text("na\xc3\xafve \xe2\x82\xac \xf0\x9f\x90\x9f"),
             "na\xc3\xafve \xe2\x82\xac \xf0\x9f\x90\x9f");
   // Not UTF-8: a lone byte, an overlong slash, a surrogate, a cut character, a control character.
-  EXPECT_EQ(tools::html_text("\xff"), "\xef\xbf\xbd");
-  EXPECT_EQ(tools::html_text("\xc0\xaf"), "\xef\xbf\xbd\xef\xbf\xbd");
-  EXPECT_EQ(tools::html_text("\xed\xa0\x80"), "\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd");
-  EXPECT_EQ(tools::html_text("\xe2\x82"), "\xef\xbf\xbd\xef\xbf\xbd");
-  EXPECT_EQ(tools::html_text(std::string("\x1b[31m\0", 6)), "\xef\xbf\xbd[31m\xef\xbf\xbd");
+  EXPECT_EQ(experiment::html_text("\xff"), "\xef\xbf\xbd");
+  EXPECT_EQ(experiment::html_text("\xc0\xaf"), "\xef\xbf\xbd\xef\xbf\xbd");
+  EXPECT_EQ(experiment::html_text("\xed\xa0\x80"), "\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd");
+  EXPECT_EQ(experiment::html_text("\xe2\x82"), "\xef\xbf\xbd\xef\xbf\xbd");
+  EXPECT_EQ(experiment::html_text(std::string("\x1b[31m\0", 6)), "\xef\xbf\xbd[31m\xef\xbf\xbd");
 }
 
 TEST(Html, Base64IsThatOfRfc4648) {
   // The test vectors of section 10.
-  EXPECT_EQ(tools::base64(""), "");
-  EXPECT_EQ(tools::base64("f"), "Zg==");
-  EXPECT_EQ(tools::base64("fo"), "Zm8=");
-  EXPECT_EQ(tools::base64("foo"), "Zm9v");
-  EXPECT_EQ(tools::base64("foob"), "Zm9vYg==");
-  EXPECT_EQ(tools::base64("fooba"), "Zm9vYmE=");
-  EXPECT_EQ(tools::base64("foobar"), "Zm9vYmFy");
-  EXPECT_EQ(tools::base64("\xff\xff\xfe"), "///+");
+  EXPECT_EQ(experiment::base64(""), "");
+  EXPECT_EQ(experiment::base64("f"), "Zg==");
+  EXPECT_EQ(experiment::base64("fo"), "Zm8=");
+  EXPECT_EQ(experiment::base64("foo"), "Zm9v");
+  EXPECT_EQ(experiment::base64("foob"), "Zm9vYg==");
+  EXPECT_EQ(experiment::base64("fooba"), "Zm9vYmE=");
+  EXPECT_EQ(experiment::base64("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(experiment::base64("\xff\xff\xfe"), "///+");
 }
 
 TEST(Report, OfARunIsOnePageWithVerdictsFirst) {
   const ScratchFolder folder;
   const std::string directory = folder.file("run");
-  const tools::Summary summary = run_into(directory,
-                                          "metrics: [{name: distance, type: distance, vehicle: r1}]\n"
-                                          "pass: [distance.travelled_m < 1, "
-                                          "distance.travelled_m > 1]\n");
+  const experiment::Summary summary = run_into(directory,
+                                               "metrics: [{name: distance, type: distance, vehicle: r1}]\n"
+                                               "pass: [distance.travelled_m < 1, "
+                                               "distance.travelled_m > 1]\n");
   ASSERT_EQ(summary.exit_code, 1);
-  const std::string page = tools::report_page({directory});
+  const std::string page = experiment::report_page({directory});
   EXPECT_EQ(problems_of_page(page), "");
   EXPECT_THAT(page, HasSubstr("<title>small</title>"));
   EXPECT_THAT(page, HasSubstr("<th scope=\"row\">Seed</th><td>7</td>"));
-  EXPECT_THAT(page, HasSubstr(tools::short_version()));
+  EXPECT_THAT(page, HasSubstr(experiment::short_version()));
   EXPECT_THAT(page, HasSubstr("<span class=\"bad\">FAILED</span> distance.travelled_m"));
   EXPECT_THAT(page, HasSubstr("<span class=\"good\">passed</span> distance.travelled_m"));
   EXPECT_THAT(page, HasSubstr("1 of 2 rules holds, 1 failed."));
@@ -138,7 +138,7 @@ TEST(Report, OfARunIsOnePageWithVerdictsFirst) {
   EXPECT_LT(page.find("r1 traveled"), page.find("<img"));
   EXPECT_LT(page.find("<img"), page.find("<h2>Figures"));
   EXPECT_THAT(page, HasSubstr("src=\"data:image/png;base64,iVBORw0KGgo"));
-  EXPECT_EQ(problems_of_page(tools::report_page({directory + "/"})), "");
+  EXPECT_EQ(problems_of_page(experiment::report_page({directory + "/"})), "");
 }
 
 TEST(Report, NamesInAWorldAreNoHtml) {
@@ -146,7 +146,7 @@ TEST(Report, NamesInAWorldAreNoHtml) {
   const std::string directory = folder.file("run");
   run_into(directory, "", "</title><script>alert(1)</script> \" onload=x");
   write(directory + "/pilot.log", "<img src=x onerror=y>\n\x1b[31m\xff");
-  const std::string page = tools::report_page({directory});
+  const std::string page = experiment::report_page({directory});
   EXPECT_EQ(problems_of_page(page), "");
   EXPECT_THAT(page, Not(HasSubstr("<script")));
   EXPECT_THAT(page, HasSubstr("&lt;img src=x onerror=y&gt;"));
@@ -158,7 +158,7 @@ TEST(Report, NamesImagesThatAreMissingOrNone) {
   run_into(directory, "");
   fs::remove(directory + "/tracks.png");
   write(directory + "/errors.png", "GIF89a");
-  const std::string page = tools::report_page({directory});
+  const std::string page = experiment::report_page({directory});
   EXPECT_THAT(page, HasSubstr("tracks.png is missing."));
   EXPECT_THAT(page, HasSubstr("errors.png is not a complete PNG file."));
   EXPECT_EQ(problems_of_page(page), "");
@@ -169,13 +169,13 @@ TEST(Report, TakesNoImageThatIsCutOffOrDamaged) {
   const std::string directory = folder.file("run");
   run_into(directory, "");
   const std::string good = text_of_file(directory + "/tracks.png");
-  ASSERT_TRUE(tools::is_whole_png(good));
+  ASSERT_TRUE(experiment::is_whole_png(good));
   std::string damaged = good;
   damaged[good.size() / 2] ^= 1;
   for (const std::string& bad : {good.substr(0, 8), good.substr(0, good.size() / 2), good + "x", damaged}) {
-    EXPECT_FALSE(tools::is_whole_png(bad));
+    EXPECT_FALSE(experiment::is_whole_png(bad));
     write(directory + "/tracks.png", bad);
-    const std::string page = tools::report_page({directory});
+    const std::string page = experiment::report_page({directory});
     EXPECT_THAT(page, HasSubstr("tracks.png is not a complete PNG file."));
     EXPECT_THAT(page, Not(HasSubstr("<img")));
   }
@@ -184,24 +184,24 @@ TEST(Report, TakesNoImageThatIsCutOffOrDamaged) {
 TEST(Report, SaysWhatTheWorldIsAndThatNothingWasJudged) {
   const ScratchFolder folder;
   run_into(folder.file("a"), "description: A rover & its <lidar>.\n");
-  const std::string page = tools::report_page({folder.file("a")});
+  const std::string page = experiment::report_page({folder.file("a")});
   EXPECT_THAT(page, HasSubstr("<p>A rover &amp; its &lt;lidar&gt;.</p>"));
   EXPECT_THAT(page, HasSubstr("not judged</span>: the world has no rules"));
   EXPECT_THAT(page, Not(HasSubstr("passed</span>")));
   run_into(folder.file("b"),
            "metrics: [{name: distance, type: distance, vehicle: r1}]\n"
            "pass: [distance.travelled_m < 1]\n");
-  EXPECT_THAT(tools::report_page({folder.file("a"), folder.file("b")}),
+  EXPECT_THAT(experiment::report_page({folder.file("a"), folder.file("b")}),
               HasSubstr("<tr><td>verdict</td><td>not judged</td><td>passed</td></tr>"));
 }
 
 TEST(Report, ARunThatWasEndedByHandIsNotJudged) {
   const ScratchFolder folder;
   const std::string directory = folder.file("run");
-  tools::Summary summary = run_into(directory, "");
+  experiment::Summary summary = run_into(directory, "");
   summary.ended = "quit";
-  tools::write_summary(directory, summary);
-  const std::string page = tools::report_page({directory});
+  experiment::write_summary(directory, summary);
+  const std::string page = experiment::report_page({directory});
   EXPECT_THAT(page, HasSubstr("not judged</span>: ended by quit"));
   EXPECT_THAT(page, Not(HasSubstr("passed</span>")));
   EXPECT_THAT(page, Not(HasSubstr("FAILED</span>")));
@@ -210,12 +210,12 @@ TEST(Report, ARunThatWasEndedByHandIsNotJudged) {
 TEST(Report, ReportsProgramsThatFailedAndOfAnOutage) {
   const ScratchFolder folder;
   const std::string directory = folder.file("run");
-  const tools::Summary run = run_into(directory, "");
-  tools::Summary summary = run;
+  const experiment::Summary run = run_into(directory, "");
+  experiment::Summary summary = run;
   summary.processes = {{"pilot", "was killed by signal 9 (Killed)", 2, true}};
   summary.metrics["place.max_gap_s"] = 60;
-  tools::write_summary(directory, summary);
-  const std::string page = tools::report_page({directory});
+  experiment::write_summary(directory, summary);
+  const std::string page = experiment::report_page({directory});
   EXPECT_THAT(page, HasSubstr("Programs of the world failed."));
   EXPECT_THAT(page, HasSubstr("For 60.0 s there was no estimate: place.max_gap_s."));
 }
@@ -225,7 +225,7 @@ TEST(Report, OfSeveralRunsComparesThem) {
   const std::string metrics = "metrics: [{name: distance, type: distance, vehicle: r1}]\n";
   run_into(folder.file("a"), metrics);
   run_into(folder.file("b"), "metrics: [{name: other, type: collisions}]\n", "large");
-  const std::string page = tools::report_page({folder.file("a"), folder.file("b")});
+  const std::string page = experiment::report_page({folder.file("a"), folder.file("b")});
   EXPECT_EQ(problems_of_page(page), "");
   EXPECT_THAT(page, HasSubstr("<tr><td>world</td><td>small</td><td>large</td></tr>"));
   EXPECT_THAT(page, HasSubstr("<td></td><td>0</td></tr>"));
@@ -236,10 +236,10 @@ TEST(Report, OfSeveralRunsComparesThem) {
 std::string folder_of(const ScratchFolder& scratch, const std::map<std::string, double>& metrics,
                       const std::string& world) {
   const std::string directory = scratch.file("figures");
-  tools::Summary summary;
+  experiment::Summary summary;
   summary.world = "sea";
   summary.metrics = metrics;
-  tools::write_summary(directory, summary);
+  experiment::write_summary(directory, summary);
   write(directory + "/world.yaml", world);
   return directory;
 }
@@ -268,19 +268,19 @@ std::map<std::string, double> sea_figures() {
 
 TEST(Report, SaysInWordsWhatCameOut) {
   const ScratchFolder folder;
-  const std::string page = tools::report_page({folder_of(folder, sea_figures(), sea_metrics)});
+  const std::string page = experiment::report_page({folder_of(folder, sea_figures(), sea_metrics)});
   EXPECT_EQ(problems_of_page(page), "");
   EXPECT_THAT(page, HasSubstr("auv localizes itself to 0.91 m rms (cooperative); alone: 61.2 m rms, 138 m at the end, "
                               "after 2.80 km."));
   EXPECT_THAT(page, HasSubstr("link: 130 packets sent by auv; 75 % of 100 addressed to auv arrived."));
   // Without the world no one knows whose they are; a world that is not YAML is not known.
-  const std::string unknown = tools::report_page({folder_of(folder, sea_figures(), "}{")});
+  const std::string unknown = experiment::report_page({folder_of(folder, sea_figures(), "}{")});
   EXPECT_THAT(unknown, HasSubstr("cooperative: 0.91 m rms; alone: 61.2 m rms, 138 m at the end, after 2.80 km."));
 }
 
 TEST(Report, GroupsFiguresByMetricWithUnitsAndFoldsZeros) {
   const ScratchFolder folder;
-  const std::string page = tools::report_page({folder_of(folder, sea_figures(), sea_metrics)});
+  const std::string page = experiment::report_page({folder_of(folder, sea_figures(), sea_metrics)});
   const auto of_link = page.find("<h3>link ");
   // The order is that of the world, not of the alphabet.
   EXPECT_LT(page.find("<h3>cooperative "), page.find("<h3>alone "));
@@ -300,20 +300,20 @@ TEST(Report, GroupsFiguresByMetricWithUnitsAndFoldsZeros) {
 TEST(Report, SaysWhatTouchedWhat) {
   const ScratchFolder folder;
   const std::string directory = folder_of(folder, {}, "");
-  EXPECT_THAT(tools::report_page({directory}), HasSubstr("The world has no metrics: nothing was measured."));
+  EXPECT_THAT(experiment::report_page({directory}), HasSubstr("The world has no metrics: nothing was measured."));
   std::string summary = text_of_file(directory + "/summary.json");
   const std::string none = "\"contacts\": []";
   ASSERT_NE(summary.find(none), std::string::npos) << summary;
   summary.replace(summary.find(none), none.size(),
                   R"("contacts": [{"vehicle": "auv4", "with": "rock", "first_s": 105.7, "count": 3}])");
   write(directory + "/summary.json", summary);
-  EXPECT_THAT(tools::report_page({directory}), HasSubstr("<li>auv4 hits rock at 105.7 s, 3 times in all.</li>"));
+  EXPECT_THAT(experiment::report_page({directory}), HasSubstr("<li>auv4 hits rock at 105.7 s, 3 times in all.</li>"));
 }
 
 TEST(Report, TakesFiguresOfAnyName) {
   const ScratchFolder folder;
-  const std::string page = tools::report_page(
-      {folder_of(folder, {{"a", 1}, {"a.", 2}, {".b", 3}, {"c.d.e", 4}, {"", 5}, {"<x>.rms_m", tools::no_figure}},
+  const std::string page = experiment::report_page(
+      {folder_of(folder, {{"a", 1}, {"a.", 2}, {".b", 3}, {"c.d.e", 4}, {"", 5}, {"<x>.rms_m", experiment::no_figure}},
                  "metrics: [1, {name: [a]}, {name: a}]")});
   EXPECT_EQ(problems_of_page(page), "");
   EXPECT_THAT(page, HasSubstr("&lt;x&gt;"));
@@ -363,12 +363,12 @@ TEST(Report, ReportsWhatIsWrongWithASummary) {
 
 TEST(ReportPage, ListsMessagesThatShadowsTook) {
   const ScratchFolder folder;
-  tools::Summary summary = run_into(folder.file("run"), "");
+  experiment::Summary summary = run_into(folder.file("run"), "");
   summary.acoustics.emplace();
   summary.acoustics->lost["shadow"] = 1;
   summary.shadowed = {{12.5, "boat/modem", "auv/modem", 431}};
   write(folder.file("run/summary.json"), summary.to_json());
-  const std::string page = tools::report_page({folder.file("run")});
+  const std::string page = experiment::report_page({folder.file("run")});
   EXPECT_THAT(page, HasSubstr("Packets in shadows"));
   EXPECT_THAT(page, HasSubstr("12.500 s"));
   EXPECT_THAT(page, HasSubstr("boat/modem to auv/modem, 431 m"));

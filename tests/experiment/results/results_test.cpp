@@ -38,8 +38,8 @@ sim::LoadedWorld small_world(const std::string& more = "") {
       "small.yaml");
 }
 
-tools::RunOptions quiet_run() {
-  tools::RunOptions options;
+experiment::RunOptions quiet_run() {
+  experiment::RunOptions options;
   options.bus = "none";
   options.quiet = true;
   return options;
@@ -51,7 +51,7 @@ TEST(RunWorld, EndsByAnEventWithItsVerdictAndTheRecordsOfZones) {
         "zones: [{name: goal, shape: sphere, radius_m: 1, finish: true}]\n"
         "events: [{name: stop, at: 0.2, do: [{end: {reason: enough, passed: " +
         std::string(passed ? "true" : "false") + "}}]}]\n");
-    const tools::Summary summary = tools::run_world(world, quiet_run());
+    const experiment::Summary summary = experiment::run_world(world, quiet_run());
     EXPECT_EQ(summary.ended, "event");
     EXPECT_EQ(summary.exit_code, passed ? 0 : 1);
     EXPECT_EQ(summary.steps, 201);  // the step in which the event fires is done
@@ -64,7 +64,7 @@ TEST(RunWorld, EndsByAnEventWithItsVerdictAndTheRecordsOfZones) {
 }
 
 TEST(Summary, HasTheSameKeysForEveryWorld) {
-  tools::Summary summary;
+  experiment::Summary summary;
   summary.world = "harbor";
   summary.seed = 3;
   summary.steps = 1000;
@@ -108,7 +108,7 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
 }
 
 TEST(Summary, ListsEffectsOfSoundAndMessagesThatShadowsTook) {
-  tools::Summary summary;
+  experiment::Summary summary;
   summary.acoustics.emplace();
   summary.acoustics->lost["shadow"] = 1;
   summary.acoustic_effects = {"propagation"};
@@ -120,15 +120,15 @@ TEST(Summary, ListsEffectsOfSoundAndMessagesThatShadowsTook) {
 }
 
 TEST(Summary, AProgramThatFailedIsARuleThatFailedAlsoWithoutOtherRules) {
-  tools::Summary summary;
+  experiment::Summary summary;
   summary.processes = {{"done", "exited with code 0", 1, false}};
   summary.judge_processes();
   EXPECT_FALSE(summary.judged());
-  EXPECT_EQ(summary.judgement(), tools::Judgement::not_judged);
+  EXPECT_EQ(summary.judgement(), experiment::Judgement::not_judged);
   summary.processes.push_back({"pilot", "exited with code 2", 0.5, true});
-  tools::Summary ruled = summary;
+  experiment::Summary ruled = summary;
   summary.judge_processes();
-  EXPECT_EQ(summary.judgement(), tools::Judgement::failed);
+  EXPECT_EQ(summary.judgement(), experiment::Judgement::failed);
   EXPECT_THAT(summary.to_text(),
               testing::HasSubstr("FAILED: process 'pilot' must not fail; it exited with code 2 at 0.50 s"));
   summary = ruled;
@@ -136,7 +136,7 @@ TEST(Summary, AProgramThatFailedIsARuleThatFailedAlsoWithoutOtherRules) {
   summary.judge_processes();
   ASSERT_EQ(summary.verdicts.size(), 2u);
   EXPECT_EQ(summary.verdicts[1].rule, "process 'pilot' must not fail; it exited with code 2 at 0.50 s");
-  EXPECT_EQ(summary.judgement(), tools::Judgement::failed);
+  EXPECT_EQ(summary.judgement(), experiment::Judgement::failed);
   const auto json = nlohmann::json::parse(summary.to_json());
   EXPECT_EQ(json["judged"], true);
   EXPECT_EQ(json["processes"][0]["failed"], false);
@@ -144,7 +144,7 @@ TEST(Summary, AProgramThatFailedIsARuleThatFailedAlsoWithoutOtherRules) {
 }
 
 TEST(Summary, NamesWhatTheRecordLacksInOneLine) {
-  tools::Summary summary;
+  experiment::Summary summary;
   EXPECT_THAT(summary.to_text(), testing::Not(testing::HasSubstr("not in the record")));
   EXPECT_FALSE(nlohmann::json::parse(summary.to_json()).contains("not_recorded"));
   summary.not_recorded = {"a", "b"};
@@ -156,14 +156,14 @@ TEST(Summary, NamesWhatTheRecordLacksInOneLine) {
 }
 
 TEST(Summary, KeepsTheWarningsOfTheEndIfThereWereAny) {
-  tools::Summary summary;
+  experiment::Summary summary;
   EXPECT_FALSE(nlohmann::json::parse(summary.to_json()).contains("warnings"));
   summary.warnings = {"device 'a/gps': no fix in 60 s"};
   EXPECT_EQ(nlohmann::json::parse(summary.to_json())["warnings"], nlohmann::json({"device 'a/gps': no fix in 60 s"}));
 }
 
 TEST(Summary, ReportsWhatBecameOfAcousticPackets) {
-  tools::Summary summary;
+  experiment::Summary summary;
   EXPECT_FALSE(nlohmann::json::parse(summary.to_json()).contains("acoustics"));
   summary.acoustics.emplace();
   EXPECT_EQ(nlohmann::json::parse(summary.to_json())["acoustics"]["lost"], nlohmann::json::object());
@@ -185,17 +185,17 @@ TEST(Summary, ReportsWhatBecameOfAcousticPackets) {
 }
 
 TEST(RunWorld, CountsAcousticPacketsOnlyWhereThereAreModems) {
-  EXPECT_FALSE(tools::run_world(small_world(), quiet_run()).acoustics);
+  EXPECT_FALSE(experiment::run_world(small_world(), quiet_run()).acoustics);
 }
 
 TEST(Summary, AFigureThatIsNoNumberIsNull) {
-  tools::Summary summary;
+  experiment::Summary summary;
   summary.metrics["position.rms_m"] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(nlohmann::json::parse(summary.to_json())["metrics"]["position.rms_m"].is_null());
 }
 
 TEST(Summary, PassesOnlyWhenEveryRuleHoldsAndNothingBroke) {
-  tools::Summary summary;
+  experiment::Summary summary;
   summary.verdicts = {{"a", true}};
   EXPECT_EQ(nlohmann::json::parse(summary.to_json())["passed"], true);
   summary.exit_code = 5;
@@ -207,7 +207,7 @@ TEST(Summary, PassesOnlyWhenEveryRuleHoldsAndNothingBroke) {
 }
 
 TEST(Summary, WithoutRulesNothingHasPassed) {
-  tools::Summary summary;
+  experiment::Summary summary;
   const auto json = nlohmann::json::parse(summary.to_json());
   EXPECT_TRUE(json.at("passed").is_null()) << json.at("passed");
   EXPECT_EQ(json.at("judged"), false);
@@ -219,7 +219,7 @@ TEST(RunWorld, WithoutItsProgramsIsNotJudged) {
   const auto world = small_world(
       "metrics: [{name: distance, type: distance, vehicle: r1}]\npass: [distance.travelled_m > 1000]\n"
       "processes: [{name: pilot, command: [sleep, '1000']}]\n");
-  const tools::Summary summary = tools::run_world(world, quiet_run());
+  const experiment::Summary summary = experiment::run_world(world, quiet_run());
   EXPECT_EQ(summary.exit_code, 0);
   const auto json = nlohmann::json::parse(summary.to_json());
   EXPECT_TRUE(json.at("passed").is_null());
@@ -232,7 +232,7 @@ TEST(Results, AreLeftByARun) {
       small_world("metrics:\n  - {name: position, type: position_error, vehicle: r1, channel: r1.estimate}\n");
   auto options = quiet_run();
   options.results = folder.file("a/results");
-  const tools::Summary summary = tools::run_world(loaded, options);
+  const experiment::Summary summary = experiment::run_world(loaded, options);
   EXPECT_EQ(summary.exit_code, 0) << summary.error;
   const auto text = [&](const std::string& name) { return text_of_file(options.results + "/" + name); };
 
@@ -269,7 +269,7 @@ TEST(Results, ShowErrorsWithWhatTheEstimateSaysOfThem) {
       "small.yaml", load);
   auto options = quiet_run();
   options.results = folder.file("results");
-  const tools::Summary summary = tools::run_world(loaded, options);
+  const experiment::Summary summary = experiment::run_world(loaded, options);
   EXPECT_EQ(summary.exit_code, 0) << summary.error;
   EXPECT_NEAR(summary.metrics.at("e.rms_m"), 5, 1e-3);  // a rover that stands may creep
   EXPECT_NEAR(summary.metrics.at("c.nees_mean"), 2, 1e-3);
@@ -281,7 +281,7 @@ TEST(Results, ShowErrorsWithWhatTheEstimateSaysOfThem) {
   for (const char* image : {"tracks.png", "errors.png", "nees.png"})
     EXPECT_THAT(text_of_file(options.results + "/" + image), testing::StartsWith("\x89PNG")) << image;
   options.plots = false;
-  EXPECT_EQ(tools::run_world(loaded, options).exit_code, 0);
+  EXPECT_EQ(experiment::run_world(loaded, options).exit_code, 0);
   EXPECT_FALSE(fs::exists(options.results + "/nees.png"));
 }
 
@@ -306,7 +306,7 @@ TEST(Results, ErrorsThatAreVeryDifferentHaveALogarithmicAxis) {
         "small.yaml", load);
     auto options = quiet_run();
     options.results = folder.file("results");
-    tools::run_world(loaded, options);
+    experiment::run_world(loaded, options);
     const std::string script = text_of_file(options.results + "/plot.gp");
     EXPECT_EQ(script.find("\nset logscale y") != script.npos, very) << script;
     EXPECT_THAT(text_of_file(options.results + "/errors.png"), testing::StartsWith("\x89PNG"));
@@ -320,7 +320,7 @@ TEST(Results, AreLeftByARunThatFailed) {
       "pass:\n  - position.rms_m < 1\n");
   auto options = quiet_run();
   options.results = folder.file("results");
-  EXPECT_EQ(tools::run_world(loaded, options).exit_code, 1);  // no estimate came
+  EXPECT_EQ(experiment::run_world(loaded, options).exit_code, 1);  // no estimate came
   const auto json = nlohmann::json::parse(text_of_file(options.results + "/summary.json"));
   EXPECT_EQ(json["exit_code"], 1);
   EXPECT_EQ(json["passed"], false);
@@ -330,7 +330,7 @@ TEST(Results, NameWhatCannotBeWritten) {
   const auto loaded = small_world();
   auto options = quiet_run();
   options.results = "/proc/nowhere";
-  const tools::Summary summary = tools::run_world(loaded, options);
+  const experiment::Summary summary = experiment::run_world(loaded, options);
   EXPECT_EQ(summary.exit_code, 4);
   EXPECT_THAT(summary.error, testing::HasSubstr("cannot write results to '/proc/nowhere"));
 }
@@ -342,7 +342,7 @@ TEST(Results, NamesInAWorldAreNoCommands) {
   loaded.config.name = "x'; system \"touch " + made + "\"; set title '\n!touch " + made + "\n`touch " + made + "`";
   auto options = quiet_run();
   options.results = folder.file("results");
-  EXPECT_EQ(tools::run_world(loaded, options).exit_code, 0);
+  EXPECT_EQ(experiment::run_world(loaded, options).exit_code, 0);
   EXPECT_FALSE(fs::exists(made));
   EXPECT_THAT(text_of_file(options.results + "/tracks.png"), testing::StartsWith("\x89PNG"));
 }
@@ -353,7 +353,7 @@ TEST(Results, ReportARunThatCouldNotBeBuilt) {
   auto options = quiet_run();
   options.results = folder.file("results");
   options.record = folder.file("no/such/folder.lcm");
-  EXPECT_EQ(tools::run_world(loaded, options).exit_code, 4);
+  EXPECT_EQ(experiment::run_world(loaded, options).exit_code, 4);
   const auto json = nlohmann::json::parse(text_of_file(options.results + "/summary.json"));
   EXPECT_EQ(json["passed"], false);
   EXPECT_EQ(json["exit_code"], 4);
@@ -365,9 +365,9 @@ TEST(Results, ReplaceThoseOfAnEarlierRun) {
   const auto loaded = small_world();
   auto options = quiet_run();
   options.results = folder.file("results");
-  EXPECT_EQ(tools::run_world(loaded, options).exit_code, 0);
+  EXPECT_EQ(experiment::run_world(loaded, options).exit_code, 0);
   options.launch = true;
-  EXPECT_EQ(tools::run_world(loaded, options).exit_code, 2);
+  EXPECT_EQ(experiment::run_world(loaded, options).exit_code, 2);
   const auto json = nlohmann::json::parse(text_of_file(options.results + "/summary.json"));
   EXPECT_EQ(json["ended"], "configuration");
   EXPECT_EQ(json["steps"], 0);
@@ -380,14 +380,14 @@ TEST(Results, AreNeverMixedWithThoseOfAnotherWorld) {
   auto options = quiet_run();
   options.results = folder.file("results");
   const auto path = [&](const std::string& file) { return options.results + "/" + file; };
-  tools::run_world(small_world("processes: [{name: guest, command: [guest]}, {name: guide, command: [guide]}]\n"),
-                   options);
+  experiment::run_world(small_world("processes: [{name: guest, command: [guest]}, {name: guide, command: [guide]}]\n"),
+                        options);
   fs::create_directory(path("branch0"));
   fs::create_directory(path("branch1"));
   for (const char* file : {"guest.log", "guide.log", "report.html", "run.html", "branch0/summary.json",
                            "branch1/tracks.csv", "branch1/mine.txt", "mine.log", "mine.lcm", "branching.txt"})
     std::ofstream(path(file)) << "of the earlier run\n";
-  tools::run_world(small_world(), options);
+  experiment::run_world(small_world(), options);
   for (const char* file : {"guest.log", "guide.log", "report.html", "run.html", "branch0", "branch1/tracks.csv"})
     EXPECT_FALSE(fs::exists(path(file))) << file;
   // What no run writes by itself is kept.
@@ -402,11 +402,13 @@ TEST(Results, OfAnEarlierRunAreGoneWhenARunIsKilled) {
   const auto loaded = small_world();
   auto options = quiet_run();
   options.results = folder.file("results");
-  EXPECT_EQ(tools::run_world(loaded, options).exit_code, 0);
+  EXPECT_EQ(experiment::run_world(loaded, options).exit_code, 0);
   sim::InProcessBus bus;
   sim::World world(loaded.config, bus);
-  tools::remove_earlier_run(options.results);
-  { const tools::Results killed(options.results, world); }  // as far as a run comes that is killed in its first step
+  experiment::remove_earlier_run(options.results);
+  {
+    const experiment::Results killed(options.results, world);
+  }  // as far as a run comes that is killed in its first step
   for (const char* file : {"summary.json", "metrics.csv", "errors.csv", "tracks.png"})
     EXPECT_FALSE(fs::exists(options.results + "/" + file)) << file;
   EXPECT_TRUE(fs::exists(options.results + "/world.yaml"));
@@ -420,7 +422,7 @@ TEST(Results, AFullDiskEndsTheRunAndTheRestIsWritten) {
   options.results = folder.file("results");
   fs::create_directory(options.results);
   fs::create_symlink("/dev/full", options.results + "/tracks.csv");
-  const tools::Summary summary = tools::run_world(loaded, options);
+  const experiment::Summary summary = experiment::run_world(loaded, options);
   EXPECT_EQ(summary.exit_code, 4);
   EXPECT_EQ(summary.steps, 1000);  // the first look
   EXPECT_THAT(summary.error, testing::HasSubstr("tracks.csv': No space left on device"));
@@ -435,7 +437,7 @@ TEST(Results, OneFileThatCannotBeWrittenDoesNotLoseTheOthers) {
   auto options = quiet_run();
   options.results = folder.file("results");
   fs::create_directories(options.results + "/metrics.csv");
-  const tools::Summary summary = tools::run_world(loaded, options);
+  const experiment::Summary summary = experiment::run_world(loaded, options);
   EXPECT_EQ(summary.exit_code, 4);
   EXPECT_THAT(summary.error, testing::HasSubstr("metrics.csv"));
   EXPECT_EQ(text_of_file(options.results + "/summary.json"), summary.to_json());
@@ -447,14 +449,14 @@ TEST(Results, DoNotChangeTheRun) {
   const ScratchFolder folder;
   const auto loaded = small_world();
   auto options = quiet_run();
-  const tools::Summary without = tools::run_world(loaded, options);
+  const experiment::Summary without = experiment::run_world(loaded, options);
   options.results = folder.file("results");
   options.record = folder.file("run.lcm");
-  EXPECT_EQ(tools::run_world(loaded, options).state_hash, without.state_hash);
+  EXPECT_EQ(experiment::run_world(loaded, options).state_hash, without.state_hash);
 }
 
 TEST(Summary, IsWrittenWhateverAClientCallsItself) {
-  tools::Summary summary;
+  experiment::Summary summary;
   summary.clients.push_back({.client = "pilot\xff"});
   summary.audit.push_back({1, "quit", "operator\xff", "", ""});
   const auto json = nlohmann::json::parse(summary.to_json());
@@ -463,14 +465,14 @@ TEST(Summary, IsWrittenWhateverAClientCallsItself) {
 }
 
 TEST(Summary, DoesNotPassWhenAClientGaveTwoAnswersToOneTick) {
-  tools::Summary summary;
+  experiment::Summary summary;
   summary.verdicts.push_back({"a rule", true});
   summary.clients.push_back({.client = "pilot"});
   summary.judge_clients();
-  EXPECT_EQ(summary.judgement(), tools::Judgement::passed);
+  EXPECT_EQ(summary.judgement(), experiment::Judgement::passed);
   summary.clients[0].contradictions = 2;
   summary.judge_clients();
-  EXPECT_EQ(summary.judgement(), tools::Judgement::failed);
+  EXPECT_EQ(summary.judgement(), experiment::Judgement::failed);
   EXPECT_EQ(summary.verdicts.back().rule,
             "client 'pilot' must give one answer to each tick; another program gave 2 different ones under its name");
 }

@@ -62,7 +62,7 @@ TEST(McapOfARun, HasTheMessagesOfTheLog) {
 TEST(McapOfARun, IsNotALogToReplay) {
   const ScratchFolder folder;
   record_box(folder.file("a.mcap"));
-  EXPECT_THAT([&] { tools::read_replay_log(folder.file("a.mcap")); },
+  EXPECT_THAT([&] { experiment::read_replay_log(folder.file("a.mcap")); },
               testing::ThrowsMessage<bridges::BusError>(testing::HasSubstr("record with --record NAME.lcm")));
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 TEST(MuteBus, LetsNothingThroughWhileItIsMuted) {
   sim::InProcessBus network;
-  tools::MuteBus bus(network);
+  experiment::MuteBus bus(network);
   const auto inside = bus.open_mailbox("a");
   const auto outside = network.open_mailbox("a", 10);
   const sim::Bytes word(3, std::byte{1});

@@ -38,7 +38,7 @@ struct WatchedWorld {
   }
 
   test::TestWorld test;
-  tools::FirstContacts contacts;
+  experiment::FirstContacts contacts;
   std::vector<std::string> lines;
 };
 
@@ -183,8 +183,8 @@ TEST(FirstContacts, CountAFallThatEndsRightAfterAWayBack) {
 TEST(FirstContacts, DoNotChangeTheRun) {
   const auto hash = [](bool watch) {
     test::TestWorld test(balls(3, 1.2));
-    std::unique_ptr<tools::FirstContacts> contacts;
-    if (watch) contacts = std::make_unique<tools::FirstContacts>(test.world);
+    std::unique_ptr<experiment::FirstContacts> contacts;
+    if (watch) contacts = std::make_unique<experiment::FirstContacts>(test.world);
     for (const auto& [name, body] : test.world.find_vehicle("v1")->bodies())
       body->set_velocity_W({2, 0.1, 0}, sim::Vector3d::Zero());
     for (int i = 0; i < 300; ++i) {
@@ -206,12 +206,12 @@ TEST(FirstContacts, FloodNoTerminal) {
 }
 
 TEST(FirstContacts, AreTenLinesAtTheEndAtMost) {
-  std::vector<tools::FirstContacts::Contact> contacts(12, {"auv4", "rock", 105.7, 1, 105.7});
-  const std::string text = tools::contacts_text(contacts);
+  std::vector<experiment::FirstContacts::Contact> contacts(12, {"auv4", "rock", 105.7, 1, 105.7});
+  const std::string text = experiment::contacts_text(contacts);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 11);
   EXPECT_THAT(text, testing::StartsWith("  auv4 hit rock: 1 contact, first at 105.70 s\n"));
   EXPECT_THAT(text, HasSubstr("  and 2 more pairs hit each other\n"));
-  EXPECT_EQ(tools::contacts_text({}), "");
+  EXPECT_EQ(experiment::contacts_text({}), "");
 }
 
 }  // namespace

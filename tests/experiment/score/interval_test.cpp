@@ -7,7 +7,7 @@
 
 namespace {
 
-using namespace tools;
+using namespace experiment;
 
 TEST(Interval, QuantilesOfStudentAreThoseOfTheTables) {
   // Tables of the t distribution, 97.5 %, to the digits that they give.

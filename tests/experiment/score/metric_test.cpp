@@ -64,7 +64,7 @@ struct MetricWorld {
   }
 
   test::TestWorld test;
-  tools::Scoring scoring;
+  experiment::Scoring scoring;
 };
 
 Eigen::Matrix3d some_covariance() {
@@ -283,7 +283,7 @@ TEST(PositionError, IsOfTheTrueTimeHoweverFarTheClockIsOff) {
                             "clock: {offset_s: -3e7, drift_ppm: 20}"}) {
     test::TestWorld test(test::modem_sea({{"a", "[1, 2, -20]", "{name: modem, type: acoustic_modem}", clock}},
                                          "metrics: [{name: e, type: position_error, vehicle: a, channel: est}]\n"));
-    tools::Scoring scoring(test.world);
+    experiment::Scoring scoring(test.world);
     const sim::Vehicle& vehicle = *test.world.find_vehicle("a");
     const auto step = [&] {
       test.world.step();
@@ -407,7 +407,7 @@ TEST(Delivery, OfAWorldWithoutModemsHasNoRatio) {
   EXPECT_EQ(world.figure("d.sent"), 0);
   EXPECT_EQ(world.figure("d.received"), 0);
   EXPECT_TRUE(std::isnan(world.figure("d.ratio")));
-  for (const std::string& cause : tools::loss_causes()) EXPECT_EQ(world.figure("d.lost_" + cause), 0);
+  for (const std::string& cause : experiment::loss_causes()) EXPECT_EQ(world.figure("d.lost_" + cause), 0);
 }
 
 TEST(Delivery, CountsWhatModemsSentAndWhatTheOthersReceived) {
@@ -418,7 +418,7 @@ TEST(Delivery, CountsWhatModemsSentAndWhatTheOthersReceived) {
                       "  - {name: all, type: delivery}\n"
                       "  - {name: a, type: delivery, vehicle: a}\n"
                       "  - {name: c, type: delivery, vehicle: c, device: modem}\n"));
-  tools::Scoring scoring(test.world);
+  experiment::Scoring scoring(test.world);
   test.send("a.modem.cmd", test::bytes_to("hello"));
   test.run_for(5);
   auto figures = scoring.figures();
@@ -441,7 +441,7 @@ TEST(Delivery, CountsWhatModemsSentAndWhatTheOthersReceived) {
   EXPECT_EQ(figures.at("a.lost_half_duplex"), 1);
   EXPECT_EQ(figures.at("a.ratio"), 0);
   double lost = 0;
-  for (const std::string& cause : tools::loss_causes()) lost += figures.at("all.lost_" + cause);
+  for (const std::string& cause : experiment::loss_causes()) lost += figures.at("all.lost_" + cause);
   EXPECT_EQ(figures.at("all.lost"), lost);
   EXPECT_EQ(figures.at("all.ratio"), figures.at("all.received") / (figures.at("all.received") + lost));
 }
@@ -452,7 +452,7 @@ TEST(Delivery, IsOfWhatWasSentToAModem) {
   test::TestWorld test(test::modem_sea(
       {{"a", "[0, 0, -20]", modem}, {"near", "[300, 0, -20]", modem}, {"far", "[200000, 0, -20]", modem}},
       "metrics:\n  - {name: all, type: delivery}\n  - {name: far, type: delivery, vehicle: far}\n"));
-  tools::Scoring scoring(test.world);
+  experiment::Scoring scoring(test.world);
   test.send("a.modem.cmd", test::bytes_to("hello", "near"));
   test.run_for(5);
   EXPECT_EQ(scoring.figures().at("all.ratio"), 1) << "nobody sent to the other one";
@@ -470,7 +470,7 @@ TEST(Delivery, CountsWhatWasNotSent) {
   const std::string modem = "{name: modem, type: acoustic_modem, queue_messages: 2}";
   test::TestWorld test(test::modem_sea({{"a", "[0, 0, -20]", modem}, {"b", "[300, 0, -20]", modem}},
                                        "metrics:\n  - {name: a, type: delivery, vehicle: a}\n"));
-  tools::Scoring scoring(test.world);
+  experiment::Scoring scoring(test.world);
   for (int i = 0; i < 5; ++i) test.send("a.modem.cmd", test::bytes_to("hello"));
   test.run_for(10);
   EXPECT_EQ(scoring.figures().at("a.dropped"), 3);
@@ -489,7 +489,7 @@ TEST(Delivery, OfARadioModemCountsWhatCameAndWhatDidNot) {
       "  - {name: b, type: delivery, vehicle: b, device: radio}\n"
       "  - {name: c, type: delivery, vehicle: c}\n"
       "  - {name: d, type: delivery, vehicle: d}\n"));
-  tools::Scoring scoring(test.world);
+  experiment::Scoring scoring(test.world);
   EXPECT_TRUE(std::isnan(scoring.figures().at("all.ratio"))) << "nothing was sent";
   test.send("a.radio.cmd", test::bytes_to("hello"));
   test.run_for(1);
@@ -511,7 +511,7 @@ TEST(Delivery, OfALossyRadioLinkIsAboutItsProbability) {
   test::TestWorld test(test::modem_sea({{"a", "[0, 0, 2]", "{name: radio, type: modem, loss_probability: 0.25}"},
                                         {"b", "[50, 0, 2]", "{name: radio, type: modem}"}},
                                        "metrics:\n  - {name: b, type: delivery, vehicle: b, device: radio}\n"));
-  tools::Scoring scoring(test.world);
+  experiment::Scoring scoring(test.world);
   constexpr int messages = 2000;
   for (int i = 0; i < messages; ++i) {
     test.send("a.radio.cmd", test::bytes_to("x"));
@@ -531,7 +531,7 @@ TEST(Delivery, OfAVehicleWithBothIsAboutSoundUnlessItNamesTheRadio) {
                                        "metrics:\n  - {name: all, type: delivery}\n"
                                        "  - {name: b, type: delivery, vehicle: b}\n"
                                        "  - {name: r, type: delivery, vehicle: b, device: radio}\n"));
-  tools::Scoring scoring(test.world);
+  experiment::Scoring scoring(test.world);
   test.send("a.radio.cmd", test::bytes_to("hello"));
   test.run_for(1);
   const auto figures = scoring.figures();
@@ -548,7 +548,7 @@ TEST(Delivery, ATransponderIsNoModem) {
   test::TestWorld test(test::modem_sea({{"a", "[0, 0, 2]", devices}, {"b", "[300, 0, 2]", devices}},
                                        "metrics:\n  - {name: all, type: delivery}\n"
                                        "  - {name: b, type: delivery, vehicle: b}\n"));
-  tools::Scoring scoring(test.world);
+  experiment::Scoring scoring(test.world);
   test.send("a.radio.cmd", test::bytes_to("hello"));
   test.run_for(1);
   const auto figures = scoring.figures();
@@ -561,7 +561,7 @@ TEST(Delivery, OfModemsThatHaveLeftIsStillAboutThem) {
   const std::string modem = "{name: modem, type: acoustic_modem}";
   test::TestWorld test(test::modem_sea({{"a", "[0, 0, -20]", modem}, {"b", "[300, 0, -20]", modem}},
                                        "metrics:\n  - {name: all, type: delivery}\n"));
-  tools::Scoring scoring(test.world);
+  experiment::Scoring scoring(test.world);
   test.send("a.modem.cmd", test::bytes_to("hello"));
   test.run_for(10);
   for (const char* name : {"a", "b"}) test.world.editor().remove_vehicle(name);
@@ -574,7 +574,7 @@ TEST(Tilt, ReportsMeanSpreadAndFallOfASteadyTurn) {
   test::TestWorld test(test::box_world(
       "        - {name: clock, type: clock}\n", "{step_s: 0.001, gravity_mps2: 0}",
       "metrics:\n  - {name: all, type: tilt, vehicle: r1}\n  - {name: late, type: tilt, vehicle: r1, from_s: 5}\n"));
-  tools::Scoring scoring(test.world);
+  experiment::Scoring scoring(test.world);
   sim::Body& body = *test.world.find_vehicle("r1")->bodies().front().second;
   body.set_velocity_W({0, 0, 0}, {0, 1, 0});
   for (int step = 0; step < 1000; ++step) {

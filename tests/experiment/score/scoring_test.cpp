@@ -45,17 +45,17 @@ struct ScoredWorld {
   }
 
   test::TestWorld test;
-  tools::Scoring scoring;
+  experiment::Scoring scoring;
 };
 
 /// What `save` saved goes back into `scoring`.
-void restore_saved(tools::Scoring& scoring, const sim::Bytes& bytes, tools::History history) {
+void restore_saved(experiment::Scoring& scoring, const sim::Bytes& bytes, experiment::History history) {
   auto archive = sim::StateArchive::restorer(bytes);
   scoring.visit_state(archive, history);
   archive.end();
 }
 
-sim::Bytes save(tools::Scoring& scoring, tools::History history) {
+sim::Bytes save(experiment::Scoring& scoring, experiment::History history) {
   auto archive = sim::StateArchive::saver();
   scoring.visit_state(archive, history);
   archive.end();
@@ -63,7 +63,7 @@ sim::Bytes save(tools::Scoring& scoring, tools::History history) {
 }
 
 TEST(Scoring, GoesBackToWhatWasSaved) {
-  for (const tools::History history : {tools::History::length, tools::History::whole}) {
+  for (const experiment::History history : {experiment::History::length, experiment::History::whole}) {
     ScoredWorld world;
     world.run_for(0.1);
     world.estimate("good", 1 + 3, 2 + 4);
@@ -88,11 +88,11 @@ TEST(Scoring, OnlyAWholeHistoryGoesIntoAnotherRun) {
   world.run_for(0.1);
   world.estimate("good", 1 + 3, 2 + 4);
   world.run_for(0.1);
-  restore_saved(other.scoring, save(world.scoring, tools::History::whole), tools::History::whole);
+  restore_saved(other.scoring, save(world.scoring, experiment::History::whole), experiment::History::whole);
   EXPECT_EQ(other.scoring.figures().at("good.rms_m"), world.scoring.figures().at("good.rms_m"));
   ScoredWorld third;
-  const sim::Bytes length = save(world.scoring, tools::History::length);
-  EXPECT_THROW(restore_saved(third.scoring, length, tools::History::length), sim::SnapshotError);
+  const sim::Bytes length = save(world.scoring, experiment::History::length);
+  EXPECT_THROW(restore_saved(third.scoring, length, experiment::History::length), sim::SnapshotError);
 }
 
 TEST(Scoring, SumsUpTheErrors) {

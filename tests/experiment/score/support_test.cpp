@@ -33,27 +33,27 @@ vehicles:
          std::to_string(offset_m) + ", 0, 0.5]}\n" + parts + more;
 }
 
-std::optional<tools::Support> support_of(test::TestWorld& test, double settle_s = 2) {
+std::optional<experiment::Support> support_of(test::TestWorld& test, double settle_s = 2) {
   test.world.physics().watch_contacts(test.world.find_vehicle("t")->group());
   test.run_for(settle_s);
-  return tools::support_of(test.world, *test.world.find_vehicle("t"));
+  return experiment::support_of(test.world, *test.world.find_vehicle("t"));
 }
 
 TEST(Support, TheHullOfPointsHasNoInnerOnes) {
-  const auto hull = tools::convex_hull_of({{0, 0}, {1, 0}, {0.5, 0}, {1, 1}, {0, 1}, {0.4, 0.6}, {0, 0}});
+  const auto hull = experiment::convex_hull_of({{0, 0}, {1, 0}, {0.5, 0}, {1, 1}, {0, 1}, {0.4, 0.6}, {0, 0}});
   ASSERT_EQ(hull.size(), 4u);
   double area = 0;
   for (std::size_t i = 0; i < 4; ++i)
     area += (hull[i].x() * hull[(i + 1) % 4].y() - hull[i].y() * hull[(i + 1) % 4].x()) / 2;
   EXPECT_NEAR(area, 1, 1e-15);  // positive: counter-clockwise
-  EXPECT_EQ(tools::convex_hull_of({{0, 0}, {1, 1}, {2, 2}}).size(), 2u);
+  EXPECT_EQ(experiment::convex_hull_of({{0, 0}, {1, 1}, {2, 2}}).size(), 2u);
 }
 
 TEST(Support, MarginsAreDistancesToTheNearestEdge) {
   const std::vector<Vector2d> square{{0, 0}, {2, 0}, {2, 2}, {0, 2}};
-  EXPECT_NEAR(tools::margin_in(square, {0.5, 1}), 0.5, 1e-15);
-  EXPECT_NEAR(tools::margin_in(square, {2.5, 1}), -0.5, 1e-15);
-  EXPECT_NEAR(tools::margin_in(square, {3, 3}), -std::sqrt(2), 1e-15);  // to the corner
+  EXPECT_NEAR(experiment::margin_in(square, {0.5, 1}), 0.5, 1e-15);
+  EXPECT_NEAR(experiment::margin_in(square, {2.5, 1}), -0.5, 1e-15);
+  EXPECT_NEAR(experiment::margin_in(square, {3, 3}), -std::sqrt(2), 1e-15);  // to the corner
 }
 
 TEST(Support, OfATableAtRestIsTheRectangleOfItsFeet) {
@@ -78,7 +78,7 @@ TEST(Support, TheCapturePointIsAheadByTheSpeed) {
   ASSERT_TRUE(support_of(test));
   sim::Body& top = test.world.find_vehicle("t")->body("top");
   top.set_velocity_W({1, 0, 0}, {0, 0, 0});
-  const auto support = tools::support_of(test.world, *test.world.find_vehicle("t"));
+  const auto support = experiment::support_of(test.world, *test.world.find_vehicle("t"));
   ASSERT_TRUE(support);
   // From 0.3 m behind the edge, v sqrt(z / g) with z = 0.5 m: 0.3 - 0.2258 = 0.0742 m.
   EXPECT_NEAR(support->capture_margin_m, 0.3 - std::sqrt(0.5 / 9.80665), 1e-4);
@@ -92,7 +92,7 @@ TEST(Support, InTheAirThereIsNone) {
 
 TEST(StabilityMetric, HasTheMarginsOfATable) {
   test::TestWorld test(table_world(0.15) + "metrics: [{name: s, type: stability, vehicle: t, from_s: 1}]\n");
-  tools::Scoring scoring(test.world);
+  experiment::Scoring scoring(test.world);
   for (int i = 0; i < 2000; ++i) {
     test.world.step();
     scoring.after_step();

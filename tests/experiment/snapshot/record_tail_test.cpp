@@ -12,13 +12,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+using experiment::RecordTail;
+using experiment::TailOptions;
 using test::forward;
 using test::RecordedRun;
 using test::ReplayTest;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using tools::RecordTail;
-using tools::TailOptions;
 
 /// A record of 3 s, whose rover is commanded ten times a second.
 class RecordTailTest : public ReplayTest {
@@ -28,7 +28,7 @@ class RecordTailTest : public ReplayTest {
     fs::create_directory(snapshots());
     record(test::driven_world(), [&](RecordedRun& run, std::int64_t step) {
       if (std::count(steps.begin(), steps.end(), step) > 0)
-        tools::write_snapshot(snapshots() + "/" + std::to_string(step) + ".snapshot", run.snapshot());
+        experiment::write_snapshot(snapshots() + "/" + std::to_string(step) + ".snapshot", run.snapshot());
     });
   }
   std::string snapshots() const { return folder.file("snapshots"); }
@@ -36,11 +36,11 @@ class RecordTailTest : public ReplayTest {
   RecordTail cut(double last_s, std::uint64_t max_bytes = std::uint64_t{1} << 30) {
     const std::string whole = log;
     log = folder.file("tail.lcm");
-    return tools::write_record_tail(whole, log, {last_s, max_bytes, snapshots()});
+    return experiment::write_record_tail(whole, log, {last_s, max_bytes, snapshots()});
   }
   std::string error_of(const std::string& file) {
     try {
-      tools::write_record_tail(file, folder.file("tail.lcm"), {});
+      experiment::write_record_tail(file, folder.file("tail.lcm"), {});
     } catch (const std::runtime_error& error) {
       return error.what();
     }
@@ -54,7 +54,7 @@ TEST_F(RecordTailTest, BeginsWithTheLastSnapshotBeforeItAndRunsAgain) {
   EXPECT_EQ(tail.snapshot, "a snapshot file of the run, of 1.500 s");
   EXPECT_TRUE(tail.replayable());
   EXPECT_DOUBLE_EQ(tail.end_s, 3);
-  const tools::ReplayOutcome outcome = again();
+  const experiment::ReplayOutcome outcome = again();
   EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
   EXPECT_EQ(outcome.begin_step, 150);
   EXPECT_EQ(outcome.steps, 150);
@@ -95,12 +95,12 @@ TEST_F(RecordTailTest, BeginsWithASnapshotOfTheRecordItself) {
     if (step % 10 == 0) run.send("r1.drive.cmd", forward(0.5));
   };
   first.run(100, [&](std::int64_t step) { drive(first, step); });
-  const tools::Snapshot begin = first.snapshot();
+  const experiment::Snapshot begin = first.snapshot();
   RecordedRun second(test::driven_world(), log, &begin);
   second.run(300, [&](std::int64_t step) { drive(second, step); });
   const RecordTail tail = cut(2.5);  // from 1.5 s of 1 to 4 s
   EXPECT_EQ(tail.snapshot, "the snapshot in the record, of 1.000 s");
-  const tools::ReplayOutcome outcome = again();
+  const experiment::ReplayOutcome outcome = again();
   EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
   EXPECT_EQ(outcome.begin_step, 100);
 }

@@ -10,10 +10,10 @@
 
 namespace {
 
+using experiment::Snapshot;
+using experiment::SnapshotFileError;
 using testing::HasSubstr;
 using testing::StartsWith;
-using tools::Snapshot;
-using tools::SnapshotFileError;
 
 Snapshot example() {
   Snapshot s;
@@ -45,14 +45,14 @@ std::string error_of(const Work& work) {
 }
 
 std::string error_of_bytes(const sim::Bytes& bytes) {
-  return error_of([&] { tools::snapshot_from_bytes(bytes, "a.snapshot"); });
+  return error_of([&] { experiment::snapshot_from_bytes(bytes, "a.snapshot"); });
 }
 
 TEST(SnapshotFile, GivesBackAllThatWasWritten) {
   test_support::ScratchFolder folder;
-  tools::write_snapshot(folder.file("a.snapshot"), example());
-  const Snapshot read = tools::read_snapshot(folder.file("a.snapshot"));
-  EXPECT_EQ(tools::to_bytes(read), tools::to_bytes(example()));
+  experiment::write_snapshot(folder.file("a.snapshot"), example());
+  const Snapshot read = experiment::read_snapshot(folder.file("a.snapshot"));
+  EXPECT_EQ(experiment::to_bytes(read), experiment::to_bytes(example()));
   EXPECT_EQ(read.world, "harbor");
   EXPECT_EQ(read.vehicles, example().vehicles);
   EXPECT_DOUBLE_EQ(read.time_s(), 20);
@@ -61,14 +61,14 @@ TEST(SnapshotFile, GivesBackAllThatWasWritten) {
 
 TEST(SnapshotFile, LeavesNothingBesideIt) {
   test_support::ScratchFolder folder;
-  for (int i = 0; i < 2; ++i) tools::write_snapshot(folder.file("a.snapshot"), example());
+  for (int i = 0; i < 2; ++i) experiment::write_snapshot(folder.file("a.snapshot"), example());
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder.file("."))) files += entry.exists() ? 1 : 0;
   EXPECT_EQ(files, 1);
 }
 
 TEST(SnapshotFile, RefusesOneCutOffAtAnyByte) {
-  const sim::Bytes whole = tools::to_bytes(example());
+  const sim::Bytes whole = experiment::to_bytes(example());
   for (std::size_t size = 0; size < whole.size(); ++size) {
     const std::string error = error_of_bytes({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)});
     EXPECT_THAT(error, StartsWith("a.snapshot: is ")) << size;
@@ -76,7 +76,7 @@ TEST(SnapshotFile, RefusesOneCutOffAtAnyByte) {
 }
 
 TEST(SnapshotFile, RefusesOneWithAnyByteChanged) {
-  const sim::Bytes whole = tools::to_bytes(example());
+  const sim::Bytes whole = experiment::to_bytes(example());
   for (std::size_t at = 0; at < whole.size(); ++at) {
     sim::Bytes damaged = whole;
     damaged[at] ^= std::byte{0x40};
@@ -90,7 +90,7 @@ TEST(SnapshotFile, RefusesOneWithAnyByteChanged) {
 TEST(SnapshotFile, RefusesForeignFilesAndOtherFormats) {
   EXPECT_EQ(error_of_bytes(sim::Bytes(100, std::byte{'x'})),
             "a.snapshot: is not a Shoal snapshot: it must start with 'SHOALSNP'");
-  sim::Bytes other = tools::to_bytes(example());
+  sim::Bytes other = experiment::to_bytes(example());
   other[8] = std::byte{3};
   EXPECT_EQ(error_of_bytes(other),
             "a.snapshot: its format version must be 2, got 3: shoal 1.2.3 (abc) wrote it, and only the same build can "
@@ -102,27 +102,29 @@ TEST(SnapshotFile, RefusesForeignFilesAndOtherFormats) {
 TEST(SnapshotFile, RefusesTimesThatAreNone) {
   Snapshot far = example();
   far.epoch_us = INT64_MAX - 5;
-  EXPECT_EQ(error_of_bytes(tools::to_bytes(far)), "a.snapshot: the epoch 9223372036854775802 us is too far away");
+  EXPECT_EQ(error_of_bytes(experiment::to_bytes(far)), "a.snapshot: the epoch 9223372036854775802 us is too far away");
   Snapshot early = example();
   early.step = -1;
-  EXPECT_EQ(error_of_bytes(tools::to_bytes(early)), "a.snapshot: step -1 of 10000 us is invalid");
+  EXPECT_EQ(error_of_bytes(experiment::to_bytes(early)), "a.snapshot: step -1 of 10000 us is invalid");
 }
 
 TEST(SnapshotFile, RefusesWhatAnotherBuildWrote) {
   EXPECT_EQ(
-      error_of([] { tools::check_version(example(), "a.snapshot", "1.2.4 (abd)"); }),
+      error_of([] { experiment::check_version(example(), "a.snapshot", "1.2.4 (abd)"); }),
       "a.snapshot: was written by shoal 1.2.3 (abc), this is 1.2.4 (abd): only the same build can continue from it");
-  EXPECT_NO_THROW(tools::check_version(example(), "a.snapshot", "1.2.3 (abc)"));
+  EXPECT_NO_THROW(experiment::check_version(example(), "a.snapshot", "1.2.3 (abc)"));
 }
 
 TEST(SnapshotFile, SaysWhichFileCannotBeReadOrWritten) {
   test_support::ScratchFolder folder;
   const std::string missing = folder.file("no/such.snapshot");
-  EXPECT_EQ(error_of([&] { tools::read_snapshot(missing); }), missing + ": cannot be read: No such file or directory");
-  EXPECT_EQ(error_of([&] { tools::write_snapshot(missing, example()); }),
+  EXPECT_EQ(error_of([&] { experiment::read_snapshot(missing); }),
+            missing + ": cannot be read: No such file or directory");
+  EXPECT_EQ(error_of([&] { experiment::write_snapshot(missing, example()); }),
             missing + ": cannot be written: No such file or directory");
-  EXPECT_EQ(error_of([&] { tools::read_snapshot(folder.file(".")); }), folder.file(".") + ": is not a regular file");
-  EXPECT_EQ(error_of([&] { tools::read_snapshot("/dev/zero"); }), "/dev/zero: is not a regular file");
+  EXPECT_EQ(error_of([&] { experiment::read_snapshot(folder.file(".")); }),
+            folder.file(".") + ": is not a regular file");
+  EXPECT_EQ(error_of([&] { experiment::read_snapshot("/dev/zero"); }), "/dev/zero: is not a regular file");
 }
 
 }  // namespace

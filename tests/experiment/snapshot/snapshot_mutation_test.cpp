@@ -125,7 +125,7 @@ TEST_P(SnapshotMutation, NeitherHangsNorCrashes) {
   };
   step(300);
   const sim::Bytes good = world.state().snapshot();
-  tools::Snapshot file;
+  experiment::Snapshot file;
   file.step_us = world.step_time().count();
   file.step = world.step_number();
   sim::Random random(static_cast<std::uint64_t>(from_environment("SHOAL_MUTATION_SEED", 1)), GetParam());
@@ -138,7 +138,8 @@ TEST_P(SnapshotMutation, NeitherHangsNorCrashes) {
     file.state = good;
     mutate(file.state, random);
     // As a file: its checksum is that of what was changed.
-    const tools::Snapshot crafted = tools::snapshot_from_bytes(tools::to_bytes(file), "crafted.snapshot");
+    const experiment::Snapshot crafted =
+        experiment::snapshot_from_bytes(experiment::to_bytes(file), "crafted.snapshot");
     try {
       world.state().restore(crafted.state);
       step(20);

@@ -7,9 +7,9 @@
 
 namespace {
 
-using tools::in_pieces;
-using tools::Snapshot;
-using tools::SnapshotPieces;
+using experiment::in_pieces;
+using experiment::Snapshot;
+using experiment::SnapshotPieces;
 
 /// Of some 200 kB: four pieces.
 Snapshot small_example() {
@@ -34,7 +34,7 @@ TEST(SnapshotPieces, MakeTheSnapshotAgainWithoutItsScores) {
     const auto bytes = together.add(pieces[i]);
     ASSERT_EQ(bytes.has_value(), i == 3) << i;
     if (!bytes) continue;
-    const Snapshot again = tools::snapshot_from_bytes(*bytes, "again");
+    const Snapshot again = experiment::snapshot_from_bytes(*bytes, "again");
     EXPECT_EQ(again.state, small_example().state);
     EXPECT_TRUE(again.scores.empty());
   }

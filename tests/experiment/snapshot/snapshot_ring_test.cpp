@@ -9,7 +9,7 @@
 
 namespace {
 
-using tools::SnapshotRing;
+using experiment::SnapshotRing;
 
 /// A state of three parts: one that moves, one that stays, one whose length changes.
 sim::Bytes state_at(std::int64_t step) {

@@ -29,8 +29,8 @@ struct AlgorithmStudy {
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(folder.file(name), std::ios::binary) << text;
   }
-  tools::LoadedStudy load(const tools::StudyChanges& changes = {}) const {
-    return tools::load_study(folder.file("study.yaml"), changes);
+  experiment::LoadedStudy load(const experiment::StudyChanges& changes = {}) const {
+    return experiment::load_study(folder.file("study.yaml"), changes);
   }
   std::string error() const {
     try {
@@ -44,11 +44,11 @@ struct AlgorithmStudy {
 };
 
 /// Runs with these rms by algorithm and seed, a bound of 1 m and a NEES by algorithm.
-std::vector<tools::StudyRun> runs_with(const tools::LoadedStudy& study,
-                                       const std::map<std::string, std::vector<double>>& rms,
-                                       const std::map<std::string, std::vector<double>>& nees) {
-  std::vector<tools::StudyRun> runs = tools::plan_study(study, "out");
-  for (tools::StudyRun& run : runs) {
+std::vector<experiment::StudyRun> runs_with(const experiment::LoadedStudy& study,
+                                            const std::map<std::string, std::vector<double>>& rms,
+                                            const std::map<std::string, std::vector<double>>& nees) {
+  std::vector<experiment::StudyRun> runs = experiment::plan_study(study, "out");
+  for (experiment::StudyRun& run : runs) {
     const auto seed = static_cast<std::size_t>(run.seed - 1);
     run.record.emplace();
     run.record->run_hash = "00000000000000a1";
@@ -67,13 +67,13 @@ std::vector<tools::StudyRun> runs_with(const tools::LoadedStudy& study,
 
 TEST(AlgorithmTable, HasTheRootMeanSquareTheEfficiencyAndTheNeesOverTheSeeds) {
   const AlgorithmStudy folder;
-  const tools::LoadedStudy study = folder.load();
+  const experiment::LoadedStudy study = folder.load();
   const auto runs = runs_with(study, {{"ci", {2, 2, 4, 4, 3}}, {"iu", {1, 1, 2, 2, 1.5}}},
                               {{"ci", {8, 9, 9, 10, 9}}, {"iu", {1.5, 2, 2.5, 2, 2}}});
-  const tools::StudyResults results(study, runs);
-  const tools::AlgorithmTable table(results);
+  const experiment::StudyResults results(study, runs);
+  const experiment::AlgorithmTable table(results);
   ASSERT_EQ(table.cells().size(), 2u);
-  const tools::AlgorithmCell& ci = table.cells()[0];
+  const experiment::AlgorithmCell& ci = table.cells()[0];
   EXPECT_EQ(ci.world, "small");
   EXPECT_EQ(ci.runs, 5u);
   EXPECT_DOUBLE_EQ(ci.rms_m, std::sqrt(9.8));           // sqrt((4 + 4 + 16 + 16 + 9) / 5)
@@ -83,27 +83,27 @@ TEST(AlgorithmTable, HasTheRootMeanSquareTheEfficiencyAndTheNeesOverTheSeeds) {
   EXPECT_LT(ci.rms_95.low, ci.rms_m);
   EXPECT_LE(ci.rms_95.high, 4);
   EXPECT_GT(ci.rms_95.high, ci.rms_m);
-  EXPECT_EQ(ci.trust, tools::Trust::overconfident);             // 9 -/+ 2.78 x 0.707 / sqrt(5) lies above 2
-  EXPECT_EQ(table.cells()[1].trust, tools::Trust::consistent);  // 2 -/+ 2.78 x 0.354 / sqrt(5) holds 2
+  EXPECT_EQ(ci.trust, experiment::Trust::overconfident);             // 9 -/+ 2.78 x 0.707 / sqrt(5) lies above 2
+  EXPECT_EQ(table.cells()[1].trust, experiment::Trust::consistent);  // 2 -/+ 2.78 x 0.354 / sqrt(5) holds 2
 }
 
 TEST(AlgorithmTable, CallsACovarianceUnclearWhenAFewRunsDecide) {
   const AlgorithmStudy folder;
-  const tools::LoadedStudy study = folder.load();
+  const experiment::LoadedStudy study = folder.load();
   const auto runs = runs_with(study, {{"ci", {2, 2, 4, 4, 3}}, {"iu", {1, 1, 2, 2, 1.5}}},
                               {{"ci", {1, 1, 1, 1, 21}}, {"iu", {1.5, 2, 2.5, 2, 2}}});
-  const tools::StudyResults results(study, runs);
-  const tools::AlgorithmTable table(results);
-  EXPECT_EQ(table.cells()[0].trust, tools::Trust::unclear);  // 5 -/+ 2.78 x 8.94 / sqrt(5): -6 to 16
+  const experiment::StudyResults results(study, runs);
+  const experiment::AlgorithmTable table(results);
+  EXPECT_EQ(table.cells()[0].trust, experiment::Trust::unclear);  // 5 -/+ 2.78 x 8.94 / sqrt(5): -6 to 16
 }
 
 TEST(AlgorithmTable, ComparesInPairsOfEqualSeedsByTheirRatio) {
   const AlgorithmStudy folder;
-  const tools::LoadedStudy study = folder.load();
+  const experiment::LoadedStudy study = folder.load();
   const auto runs = runs_with(study, {{"ci", {2, 2, 4, 4, 3}}, {"iu", {1, 1, 2, 2, 1.5}}},
                               {{"ci", {2, 2, 2, 2, 2}}, {"iu", {9, 8, 9, 8, 8.5}}});
-  const tools::StudyResults results(study, runs);
-  const tools::AlgorithmTable table(results);
+  const experiment::StudyResults results(study, runs);
+  const experiment::AlgorithmTable table(results);
   ASSERT_EQ(table.pairs().size(), 1u);
   EXPECT_EQ(table.pairs()[0].algorithm, "iu");
   EXPECT_EQ(table.pairs()[0].base, "ci");  // the first one without `pairs`
@@ -114,17 +114,17 @@ TEST(AlgorithmTable, ComparesInPairsOfEqualSeedsByTheirRatio) {
   EXPECT_THAT(table.sentences()[0],
               HasSubstr("small: iu has the smallest rms, 1.57 m, then ci with 3.13 m; ratio in pairs 2 [2, 2]"));
   EXPECT_THAT(table.sentences()[0], HasSubstr("iu is overconfident (NEES 8.5), the best that is not is ci"));
-  EXPECT_EQ(tools::AlgorithmTable(results).text(), table.text());  // the bootstrap has a fixed seed
+  EXPECT_EQ(experiment::AlgorithmTable(results).text(), table.text());  // the bootstrap has a fixed seed
 }
 
 TEST(AlgorithmTable, IsOnThePageOfTheStudy) {
   const AlgorithmStudy folder;
-  const tools::LoadedStudy study = folder.load();
+  const experiment::LoadedStudy study = folder.load();
   const auto runs = runs_with(study, {{"ci", {2, 2, 4, 4, 3}}, {"iu", {1, 1, 2, 2, 1.5}}},
                               {{"ci", {8, 9, 9, 10, 9}}, {"iu", {2, 2, 2, 1, 2}}});
-  const tools::StudyResults results(study, runs);
+  const experiment::StudyResults results(study, runs);
   folder.write("study.json", results.to_json(0));
-  const std::string page = tools::study_report(folder.folder.file(""));
+  const std::string page = experiment::study_report(folder.folder.file(""));
   EXPECT_THAT(page, HasSubstr("<h2>Algorithms</h2>"));
   EXPECT_THAT(page, HasSubstr("m<br><span style=\"color:#d03030\" title=\"overconfident\">NEES 9 ["));
   EXPECT_THAT(page, HasSubstr("Ratios of the rms in pairs of equal seeds"));
@@ -133,13 +133,13 @@ TEST(AlgorithmTable, IsOnThePageOfTheStudy) {
 
 TEST(AlgorithmTable, LeavesOutRunsWithoutEstimates) {
   const AlgorithmStudy folder;
-  const tools::LoadedStudy study = folder.load();
+  const experiment::LoadedStudy study = folder.load();
   auto runs = runs_with(study, {{"ci", {2, 2, 2, 2, 2}}, {"iu", {1, 1, 1, 1, 1}}},
                         {{"ci", {2, 2, 2, 2, 2}}, {"iu", {2, 2, 2, 2, 2}}});
-  for (tools::StudyRun& run : runs) run.record->metrics["iu.rms_m"] = std::nullopt;
+  for (experiment::StudyRun& run : runs) run.record->metrics["iu.rms_m"] = std::nullopt;
   runs[0].record.reset();
-  const tools::StudyResults results(study, runs);
-  const tools::AlgorithmTable table(results);
+  const experiment::StudyResults results(study, runs);
+  const experiment::AlgorithmTable table(results);
   EXPECT_EQ(table.cells()[0].runs, 4u);
   EXPECT_EQ(table.cells()[0].planned, 5u);
   EXPECT_EQ(table.cells()[1].runs, 0u);
@@ -149,9 +149,9 @@ TEST(AlgorithmTable, LeavesOutRunsWithoutEstimates) {
 
 TEST(StudyAlgorithms, ComputeTheFiguresOfTheTeamFromTheFileOfShoalNav) {
   const AlgorithmStudy folder("algorithms: [ci]\n");
-  const tools::LoadedStudy study = folder.load();
-  std::vector<tools::StudyRun> runs = tools::plan_study(study, folder.folder.file(""));
-  tools::StudyRun& run = runs[0];
+  const experiment::LoadedStudy study = folder.load();
+  std::vector<experiment::StudyRun> runs = experiment::plan_study(study, folder.folder.file(""));
+  experiment::StudyRun& run = runs[0];
   run.directory = folder.folder.file("");
   run.record.emplace();
   run.record->metrics["b.rms_m"] = 2;
@@ -160,18 +160,18 @@ TEST(StudyAlgorithms, ComputeTheFiguresOfTheTeamFromTheFileOfShoalNav) {
                                         vehicle + R"(}, "other": {}}}]})");
   };
   scores(R"("rms_m": 3, "nees_mean": 2.5, "inside_95_share": 0.9, "samples": 10, "bytes_per_h": 70)");
-  tools::add_algorithm_figures(study, run);
+  experiment::add_algorithm_figures(study, run);
   EXPECT_DOUBLE_EQ(*run.record->metrics.at("ci.rms_m"), 3);
   EXPECT_DOUBLE_EQ(*run.record->metrics.at("ci.ratio"), 1.5);
   EXPECT_DOUBLE_EQ(*run.record->metrics.at("ci.nees_mean"), 2.5);
   EXPECT_DOUBLE_EQ(*run.record->metrics.at("ci.bytes_per_h"), 70);
   scores(R"("rms_m": null, "nees_mean": null, "inside_95_share": null, "samples": 0, "bytes_per_h": 70)");
-  tools::add_algorithm_figures(study, run);
+  experiment::add_algorithm_figures(study, run);
   EXPECT_FALSE(run.record->metrics.at("ci.rms_m"));
   scores(R"("rms_m": "3")");
-  EXPECT_THROW(tools::add_algorithm_figures(study, run), std::runtime_error);
+  EXPECT_THROW(experiment::add_algorithm_figures(study, run), std::runtime_error);
   folder.write("algorithms.json", R"({"algorithms": []})");
-  EXPECT_THROW(tools::add_algorithm_figures(study, run), std::runtime_error);
+  EXPECT_THROW(experiment::add_algorithm_figures(study, run), std::runtime_error);
 }
 
 TEST(StudyAlgorithms, NeedWhatIsScored) {
@@ -196,8 +196,8 @@ TEST(StudyAlgorithms, AreScoredByTheLastBoundOfEachVehicleFromOneTimeOn) {
   const AlgorithmStudy folder(
       "algorithms: [ci]\n",
       "metrics: [{name: b, type: bound, vehicle: r1, from_s: 5}, {name: c, type: bound, vehicle: r1, from_s: 7}]\n");
-  const tools::LoadedStudy study = folder.load();
-  const auto scoring = tools::algorithm_scoring(study.worlds[0].config, study.config.algorithms, {});
+  const experiment::LoadedStudy study = folder.load();
+  const auto scoring = experiment::algorithm_scoring(study.worlds[0].config, study.config.algorithms, {});
   ASSERT_EQ(scoring.vehicles.size(), 1u);
   EXPECT_EQ(scoring.vehicles[0].bound, "c");
   EXPECT_EQ(scoring.from_s, 7);
@@ -210,35 +210,35 @@ TEST(StudyAlgorithms, AreScoredByTheLastBoundOfEachVehicleFromOneTimeOn) {
 
 TEST(StudyAlgorithms, OfTheCommandLineAreAddedByTheNameOfTheirClass) {
   const AlgorithmStudy folder;
-  tools::StudyChanges changes;
+  experiment::StudyChanges changes;
   changes.algorithms = {"python:some/where/mine.Mine"};
-  const tools::LoadedStudy study = folder.load(changes);
+  const experiment::LoadedStudy study = folder.load(changes);
   EXPECT_EQ(study.config.algorithms.size(), 3u);
-  EXPECT_EQ(tools::algorithm_label(study.config.algorithms[2]), "Mine");
+  EXPECT_EQ(experiment::algorithm_label(study.config.algorithms[2]), "Mine");
   changes.algorithms = {"python:mine.ci"};
   EXPECT_THROW(folder.load(changes), std::invalid_argument);
-  const tools::StudyRun run = tools::plan_study(study, "out").front();
-  EXPECT_NE(tools::inputs_of(study, run), tools::inputs_of(folder.load(), run));
+  const experiment::StudyRun run = experiment::plan_study(study, "out").front();
+  EXPECT_NE(experiment::inputs_of(study, run), experiment::inputs_of(folder.load(), run));
 }
 
 TEST(VerifiedRuns, AreComparedInAllFiguresButTheCpuTime) {
   const AlgorithmStudy folder;
-  const tools::LoadedStudy study = folder.load();
+  const experiment::LoadedStudy study = folder.load();
   auto runs = runs_with(study, {{"ci", {2, 2, 4, 1.0 / 3, 2}}, {"iu", {1, 1, 2, 2, 2}}},
                         {{"ci", {2, 2, 2, 2, 2}}, {"iu", {2, 2, 2, 2, 2}}});
-  const tools::StudyResults results(study, runs);
-  const auto rows = tools::parse_study_rows(results.to_csv(), "study.csv");
+  const experiment::StudyResults results(study, runs);
+  const auto rows = experiment::parse_study_rows(results.to_csv(), "study.csv");
   ASSERT_EQ(rows.size(), 5u);
   EXPECT_EQ(rows[3].seed, 4);
-  tools::StudyRun& run = runs[3];
+  experiment::StudyRun& run = runs[3];
   run.record->metrics["ci.us_per_event"] = 77;
-  EXPECT_TRUE(tools::compare_with_row(run, rows[3]).differences.empty());
-  EXPECT_EQ(tools::compare_with_row(run, rows[3]).figures, 10u);  // five of each algorithm
+  EXPECT_TRUE(experiment::compare_with_row(run, rows[3]).differences.empty());
+  EXPECT_EQ(experiment::compare_with_row(run, rows[3]).figures, 10u);  // five of each algorithm
   run.record->metrics["ci.rms_m"] = std::nextafter(1.0 / 3, 1);
-  EXPECT_EQ(tools::compare_with_row(run, rows[3]).differences.size(), 1u);
+  EXPECT_EQ(experiment::compare_with_row(run, rows[3]).differences.size(), 1u);
   run.record->run_hash = "00000000000000a2";
   run.record->metrics.erase("iu.rms_m");
-  EXPECT_EQ(tools::compare_with_row(run, rows[3]).differences.size(), 3u);
+  EXPECT_EQ(experiment::compare_with_row(run, rows[3]).differences.size(), 3u);
 }
 
 TEST(VerifiedRuns, ATableThatIsWrongIsRefusedWithItsLine) {
@@ -246,7 +246,7 @@ TEST(VerifiedRuns, ATableThatIsWrongIsRefusedWithItsLine) {
       "case,seed,exit_code,passed,ended,sim_time_s,wall_s,run_hash,ci.rms_m,run,point,shoal,processor,c_library\n";
   const auto error = [](const std::string& text) -> std::string {
     try {
-      tools::parse_study_rows(text, "study.csv");
+      experiment::parse_study_rows(text, "study.csv");
       return {};
     } catch (const std::runtime_error& wrong) {
       return wrong.what();

@@ -25,7 +25,8 @@ std::map<std::string, std::string> frozen(const std::string& path) {
 }
 
 TEST(FrozenBenchmark, WorldsAreThoseOfItsVersion) {
-  const tools::LoadedStudy study = tools::load_study(test_support::source_path("worlds/studies/benchmark.yaml"));
+  const experiment::LoadedStudy study =
+      experiment::load_study(test_support::source_path("worlds/studies/benchmark.yaml"));
   std::map<std::string, std::string> left = frozen(test_support::source_path("worlds/benchmark/v1.txt"));
   ASSERT_FALSE(left.empty());
   for (std::size_t i = 0; i < study.config.cases.size(); ++i) {
@@ -39,7 +40,8 @@ TEST(FrozenBenchmark, WorldsAreThoseOfItsVersion) {
 }
 
 TEST(FrozenBenchmark, HashesHaveNoPathOfAMachine) {
-  const tools::LoadedStudy study = tools::load_study(test_support::source_path("worlds/studies/benchmark.yaml"));
+  const experiment::LoadedStudy study =
+      experiment::load_study(test_support::source_path("worlds/studies/benchmark.yaml"));
   for (std::size_t i = 0; i < study.worlds.size(); ++i)
     EXPECT_EQ(sim::to_yaml(study.worlds[i].resolved).find(test_support::source_path("")), std::string::npos)
         << study.config.cases[i].name;

@@ -14,8 +14,8 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-tools::StudyFactor range(double from, double to, std::int64_t levels = 3) {
-  tools::StudyFactor factor;
+experiment::StudyFactor range(double from, double to, std::int64_t levels = 3) {
+  experiment::StudyFactor factor;
   factor.name = "f";
   factor.paths = {"a.b"};
   factor.from = from;
@@ -24,44 +24,44 @@ tools::StudyFactor range(double from, double to, std::int64_t levels = 3) {
   return factor;
 }
 
-tools::StudyDesign design_of(tools::StudyDesign::Type type, std::int64_t points) {
-  tools::StudyDesign design;
+experiment::StudyDesign design_of(experiment::StudyDesign::Type type, std::int64_t points) {
+  experiment::StudyDesign design;
   design.type = type;
   design.points = points;
   return design;
 }
 
 TEST(StudyDesign, AGridHasEveryCombinationAndTheLastFactorChangesFirst) {
-  tools::StudyFactor word;
+  experiment::StudyFactor word;
   word.name = "w";
   word.paths = {"c", "d"};
   word.values = {"x", "y"};
-  const auto points = tools::design_points({}, {range(0, 1), word});
+  const auto points = experiment::design_points({}, {range(0, 1), word});
   ASSERT_EQ(points.size(), 6u);
   EXPECT_THAT(points[0].values, ElementsAre("0", "x"));
   EXPECT_THAT(points[1].values, ElementsAre("0", "y"));
   EXPECT_THAT(points[2].values, ElementsAre("0.5", "x"));
   EXPECT_THAT(points[5].values, ElementsAre("1", "y"));
-  EXPECT_THAT(tools::point_sets({range(0, 1), word}, points[5]), ElementsAre("a.b=1", "c=y", "d=y"));
+  EXPECT_THAT(experiment::point_sets({range(0, 1), word}, points[5]), ElementsAre("a.b=1", "c=y", "d=y"));
 }
 
 TEST(StudyDesign, WithoutFactorsThereIsOnePoint) {
-  EXPECT_EQ(tools::design_points({}, {}).size(), 1u);
+  EXPECT_EQ(experiment::design_points({}, {}).size(), 1u);
 }
 
 TEST(StudyDesign, RangesMayBeLogarithmicAndWhole) {
-  tools::StudyFactor factor = range(1, 100);
-  factor.scale = tools::StudyFactor::Scale::log;
-  const auto points = tools::design_points({}, {factor});
+  experiment::StudyFactor factor = range(1, 100);
+  factor.scale = experiment::StudyFactor::Scale::log;
+  const auto points = experiment::design_points({}, {factor});
   EXPECT_EQ(points[0].values[0], "1");
   EXPECT_NEAR(std::stod(points[1].values[0]), 10, 1e-12);
   EXPECT_EQ(points[2].values[0], "100");
   factor.whole = true;
-  EXPECT_EQ(tools::design_points({}, {factor})[1].values[0], "10");
+  EXPECT_EQ(experiment::design_points({}, {factor})[1].values[0], "10");
 }
 
 TEST(StudyDesign, ALatinHypercubeHasOnePointInEachPartOfEachRange) {
-  const auto shares = tools::design_shares(design_of(tools::StudyDesign::Type::latin_hypercube, 50), 3);
+  const auto shares = experiment::design_shares(design_of(experiment::StudyDesign::Type::latin_hypercube, 50), 3);
   ASSERT_EQ(shares.size(), 50u);
   for (std::size_t k = 0; k < 3; ++k) {
     std::set<int> parts;
@@ -69,16 +69,16 @@ TEST(StudyDesign, ALatinHypercubeHasOnePointInEachPartOfEachRange) {
     EXPECT_EQ(parts.size(), 50u) << k;
     EXPECT_EQ(*parts.rbegin(), 49);
   }
-  EXPECT_EQ(shares, tools::design_shares(design_of(tools::StudyDesign::Type::latin_hypercube, 50), 3));
+  EXPECT_EQ(shares, experiment::design_shares(design_of(experiment::StudyDesign::Type::latin_hypercube, 50), 3));
 }
 
 TEST(StudyDesign, TheSequenceOfSobolStartsAsPublished) {
   // Joe and Kuo's direction numbers; the first point, 0, is left out.
-  const auto shares = tools::design_shares(design_of(tools::StudyDesign::Type::sobol, 4), 2);
+  const auto shares = experiment::design_shares(design_of(experiment::StudyDesign::Type::sobol, 4), 2);
   EXPECT_THAT(shares, ElementsAre(ElementsAre(0.5, 0.5), ElementsAre(0.75, 0.25), ElementsAre(0.25, 0.75),
                                   ElementsAre(0.375, 0.375)));
   // With the point 0, each eighth of each range has one of eight points.
-  const auto seven = tools::design_shares(design_of(tools::StudyDesign::Type::sobol, 7), 5);
+  const auto seven = experiment::design_shares(design_of(experiment::StudyDesign::Type::sobol, 7), 5);
   for (std::size_t k = 0; k < 5; ++k) {
     std::set<int> parts{0};
     for (const auto& point : seven) parts.insert(static_cast<int>(point[k] * 8));
@@ -87,21 +87,21 @@ TEST(StudyDesign, TheSequenceOfSobolStartsAsPublished) {
 }
 
 TEST(StudyDesign, RandomPointsDependOnTheirSeedOnly) {
-  tools::StudyDesign design = design_of(tools::StudyDesign::Type::random, 1000);
-  const auto shares = tools::design_shares(design, 1);
+  experiment::StudyDesign design = design_of(experiment::StudyDesign::Type::random, 1000);
+  const auto shares = experiment::design_shares(design, 1);
   double sum = 0;
   for (const auto& point : shares) sum += point[0];
   EXPECT_NEAR(sum / 1000, 0.5, 4 * std::sqrt(1.0 / 12 / 1000));
   design.points = 10;
-  const auto first = tools::design_shares(design, 1);
+  const auto first = experiment::design_shares(design, 1);
   EXPECT_TRUE(std::equal(first.begin(), first.end(), shares.begin()));
   design.seed = 2;
-  EXPECT_NE(tools::design_shares(design, 1), first);
+  EXPECT_NE(experiment::design_shares(design, 1), first);
 }
 
 std::string problem_of(const std::string& until, const std::vector<std::string>& figures = {"passed", "e.rms_m"}) {
   try {
-    tools::parse_until(until, figures);
+    experiment::parse_until(until, figures);
     return {};
   } catch (const std::invalid_argument& error) {
     return error.what();
@@ -109,11 +109,11 @@ std::string problem_of(const std::string& until, const std::vector<std::string>&
 }
 
 TEST(StudyUntil, IsABoundOfHalfTheInterval) {
-  const tools::StudyUntil relative = tools::parse_until("ci < 5 %", {"passed", "e.rms_m"});
+  const experiment::StudyUntil relative = experiment::parse_until("ci < 5 %", {"passed", "e.rms_m"});
   EXPECT_EQ(relative.figure, "e.rms_m");
   EXPECT_TRUE(relative.relative);
   EXPECT_DOUBLE_EQ(relative.bound, 0.05);
-  const tools::StudyUntil absolute = tools::parse_until("ci( passed )<0.1", {});
+  const experiment::StudyUntil absolute = experiment::parse_until("ci( passed )<0.1", {});
   EXPECT_EQ(absolute.figure, "passed");
   EXPECT_FALSE(absolute.relative);
   EXPECT_EQ(problem_of("mean < 5 %"), "'until' must have the form 'ci(METRIC.FIGURE) < 5 %', got 'mean < 5 %'");
@@ -126,12 +126,12 @@ TEST(StudyUntil, IsABoundOfHalfTheInterval) {
 
 TEST(StudyUntil, IsCertainWhenTheIntervalIsNarrowEnough) {
   // Values 9 and 11: mean 10, std sqrt(2), half of the interval 12.7062 * sqrt(2) / sqrt(2) = 12.7062.
-  EXPECT_FALSE(tools::is_certain(tools::parse_until("ci(e.rms_m) < 127 %", {}), {9, 11}));
-  EXPECT_TRUE(tools::is_certain(tools::parse_until("ci(e.rms_m) < 128 %", {}), {9, 11}));
-  EXPECT_FALSE(tools::is_certain(tools::parse_until("ci(e.rms_m) < 12.7", {}), {9, 11}));
-  EXPECT_TRUE(tools::is_certain(tools::parse_until("ci(e.rms_m) < 12.71", {}), {9, 11}));
-  EXPECT_FALSE(tools::is_certain(tools::parse_until("ci(e.rms_m) < 100", {}), {9}));
-  EXPECT_FALSE(tools::is_certain(tools::parse_until("ci(e.rms_m) < 100", {}), {9, 11, std::nan("")}));
+  EXPECT_FALSE(experiment::is_certain(experiment::parse_until("ci(e.rms_m) < 127 %", {}), {9, 11}));
+  EXPECT_TRUE(experiment::is_certain(experiment::parse_until("ci(e.rms_m) < 128 %", {}), {9, 11}));
+  EXPECT_FALSE(experiment::is_certain(experiment::parse_until("ci(e.rms_m) < 12.7", {}), {9, 11}));
+  EXPECT_TRUE(experiment::is_certain(experiment::parse_until("ci(e.rms_m) < 12.71", {}), {9, 11}));
+  EXPECT_FALSE(experiment::is_certain(experiment::parse_until("ci(e.rms_m) < 100", {}), {9}));
+  EXPECT_FALSE(experiment::is_certain(experiment::parse_until("ci(e.rms_m) < 100", {}), {9, 11, std::nan("")}));
 }
 
 }  // namespace

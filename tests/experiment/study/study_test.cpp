@@ -36,7 +36,7 @@ struct StudyFolder {
   std::string path() const { return folder.file("study.yaml"); }
   std::string error() const {
     try {
-      tools::load_study(path());
+      experiment::load_study(path());
       return {};
     } catch (const sim::ConfigError& error) {
       return error.what();
@@ -52,14 +52,14 @@ const std::string two_cases =
     "  - {name: quick, set: {physics.step_s: 0.002, name: fast}}\n";
 
 /// Runs as if they had been done: `rms` by case, one for each seed; NaN: the figure is null.
-std::vector<tools::StudyRun> made_up_runs(const tools::LoadedStudy& study,
-                                          const std::vector<std::vector<double>>& rms) {
-  std::vector<tools::StudyRun> runs = tools::plan_study(study, "out");
-  for (tools::StudyRun& run : runs) {
+std::vector<experiment::StudyRun> made_up_runs(const experiment::LoadedStudy& study,
+                                               const std::vector<std::vector<double>>& rms) {
+  std::vector<experiment::StudyRun> runs = experiment::plan_study(study, "out");
+  for (experiment::StudyRun& run : runs) {
     const double value = rms[run.in_case][static_cast<std::size_t>(run.seed - study.config.seeds[0])];
     run.record.emplace();
     run.record->metrics["e.rms_m"] = std::isnan(value) ? std::nullopt : std::optional<double>(value);
-    run.record->judgement = tools::judgement_of(value < 3);
+    run.record->judgement = experiment::judgement_of(value < 3);
     run.record->ended = "duration";
     run.record->run_hash = "00000000000000a1";
   }
@@ -67,7 +67,7 @@ std::vector<tools::StudyRun> made_up_runs(const tools::LoadedStudy& study,
 }
 
 TEST(Statistics, AreThoseOfTheSample) {
-  const tools::Statistics s = tools::statistics_of({4, 1, 3, std::nan(""), 8});
+  const experiment::Statistics s = experiment::statistics_of({4, 1, 3, std::nan(""), 8});
   EXPECT_EQ(s.count, 4);
   EXPECT_DOUBLE_EQ(s.mean, 4);
   EXPECT_DOUBLE_EQ(s.std, std::sqrt((0.0 + 9 + 1 + 16) / 3));
@@ -75,40 +75,40 @@ TEST(Statistics, AreThoseOfTheSample) {
   EXPECT_DOUBLE_EQ(s.max, 8);
   EXPECT_DOUBLE_EQ(s.median, 3.5);
   EXPECT_NEAR(s.mean_95.low, 4 - 3.18245 * s.std / 2, 1e-3);  // Student's t for 3 degrees of freedom
-  EXPECT_TRUE(std::isnan(tools::statistics_of({5}).std));
-  EXPECT_TRUE(std::isnan(tools::statistics_of({5}).mean_95.high));
-  EXPECT_DOUBLE_EQ(tools::statistics_of({5}).mean, 5);
-  EXPECT_TRUE(std::isnan(tools::statistics_of({}).mean));
+  EXPECT_TRUE(std::isnan(experiment::statistics_of({5}).std));
+  EXPECT_TRUE(std::isnan(experiment::statistics_of({5}).mean_95.high));
+  EXPECT_DOUBLE_EQ(experiment::statistics_of({5}).mean, 5);
+  EXPECT_TRUE(std::isnan(experiment::statistics_of({}).mean));
 }
 
 TEST(Statistics, QuantilesLieBetweenNeighbors) {
   const std::vector<double> sorted{0, 10, 20, 30, 40};
-  EXPECT_DOUBLE_EQ(tools::quantile(sorted, 0), 0);
-  EXPECT_DOUBLE_EQ(tools::quantile(sorted, 0.05), 2);
-  EXPECT_DOUBLE_EQ(tools::quantile(sorted, 0.5), 20);
-  EXPECT_DOUBLE_EQ(tools::quantile(sorted, 0.95), 38);
-  EXPECT_DOUBLE_EQ(tools::quantile(sorted, 1), 40);
+  EXPECT_DOUBLE_EQ(experiment::quantile(sorted, 0), 0);
+  EXPECT_DOUBLE_EQ(experiment::quantile(sorted, 0.05), 2);
+  EXPECT_DOUBLE_EQ(experiment::quantile(sorted, 0.5), 20);
+  EXPECT_DOUBLE_EQ(experiment::quantile(sorted, 0.95), 38);
+  EXPECT_DOUBLE_EQ(experiment::quantile(sorted, 1), 40);
 }
 
 TEST(Curves, AreReadFromTheErrorsOfARun) {
   const ScratchFolder folder;
   write(folder.file("errors.csv"),
         "time_s,metric,error_m,travelled_m\n1,a,0.5,10\n2,b,9,11\n3,a,1.5,20\nrubbish\n4,a,x,30\n5,a,nan,30\n");
-  const tools::Curve by_distance = tools::read_error_curve(folder.file("errors.csv"), "a", "travelled_m");
+  const experiment::Curve by_distance = experiment::read_error_curve(folder.file("errors.csv"), "a", "travelled_m");
   ASSERT_EQ(by_distance.size(), 2u);
   EXPECT_EQ(by_distance[1].x, 20);
   EXPECT_EQ(by_distance[1].error_m, 1.5);
-  EXPECT_EQ(tools::read_error_curve(folder.file("errors.csv"), "a", "time_s")[1].x, 3);
-  EXPECT_TRUE(tools::read_error_curve(folder.file("errors.csv"), "a", "depth_m").empty());
-  EXPECT_TRUE(tools::read_error_curve(folder.file("none.csv"), "a", "time_s").empty());
+  EXPECT_EQ(experiment::read_error_curve(folder.file("errors.csv"), "a", "time_s")[1].x, 3);
+  EXPECT_TRUE(experiment::read_error_curve(folder.file("errors.csv"), "a", "depth_m").empty());
+  EXPECT_TRUE(experiment::read_error_curve(folder.file("none.csv"), "a", "time_s").empty());
 }
 
 TEST(Curves, BandsLieWhereHalfOfTheRunsAre) {
   // Errors 1, 2 and 3 times x; the third run ends at 5.
-  std::vector<tools::Curve> curves;
+  std::vector<experiment::Curve> curves;
   for (const double slope : {1.0, 2.0, 3.0})
     curves.push_back({{0, 0}, {slope < 3 ? 10.0 : 5.0, slope < 3 ? 10 * slope : 15}});
-  const auto bands = tools::bands_of(curves, 11);
+  const auto bands = experiment::bands_of(curves, 11);
   ASSERT_EQ(bands.size(), 11u);
   EXPECT_DOUBLE_EQ(bands[4].x, 4);
   EXPECT_DOUBLE_EQ(bands[4].median, 8);
@@ -119,15 +119,15 @@ TEST(Curves, BandsLieWhereHalfOfTheRunsAre) {
   EXPECT_DOUBLE_EQ(bands[8].median, 12);
   curves.pop_back();
   curves[1].resize(1);  // one of two runs continues: half
-  EXPECT_EQ(tools::bands_of(curves, 11).size(), 11u);
+  EXPECT_EQ(experiment::bands_of(curves, 11).size(), 11u);
   curves.push_back(curves[1]);
-  EXPECT_EQ(tools::bands_of(curves, 11).size(), 1u);
-  EXPECT_TRUE(tools::bands_of({}).empty());
+  EXPECT_EQ(experiment::bands_of(curves, 11).size(), 1u);
+  EXPECT_TRUE(experiment::bands_of({}).empty());
 }
 
 TEST(StudyConfig, ReadsRangesOfSeeds) {
   const auto seeds = [](const std::string& text) {
-    return tools::load_study(StudyFolder("", text).path()).config.seeds;
+    return experiment::load_study(StudyFolder("", text).path()).config.seeds;
   };
   EXPECT_THAT(seeds("3-6"), ElementsAre(3, 4, 5, 6));
   EXPECT_THAT(seeds("7 - 7"), ElementsAre(7));
@@ -142,39 +142,40 @@ TEST(StudyConfig, ReadsRangesOfSeeds) {
 }
 
 TEST(StudyConfig, TakesSeedsAndDurationOfTheCommandLineInstead) {
-  EXPECT_THAT(tools::parse_seeds("1-3,8"), ElementsAre(1, 2, 3, 8));
-  EXPECT_THROW(tools::parse_seeds("1,"), std::invalid_argument);
-  EXPECT_THROW(tools::parse_seeds("1,1"), std::invalid_argument);
-  EXPECT_THROW(tools::parse_seeds("-1"), std::invalid_argument);
-  const tools::LoadedStudy study = tools::load_study(StudyFolder("").path(), {{5}, 0.5});
+  EXPECT_THAT(experiment::parse_seeds("1-3,8"), ElementsAre(1, 2, 3, 8));
+  EXPECT_THROW(experiment::parse_seeds("1,"), std::invalid_argument);
+  EXPECT_THROW(experiment::parse_seeds("1,1"), std::invalid_argument);
+  EXPECT_THROW(experiment::parse_seeds("-1"), std::invalid_argument);
+  const experiment::LoadedStudy study = experiment::load_study(StudyFolder("").path(), {{5}, 0.5});
   EXPECT_THAT(study.config.seeds, ElementsAre(5));
   EXPECT_EQ(study.config.duration_s, 0.5);
 }
 
 TEST(StudyResults, SayWhenCasesDoNotDifferThoughTheirSettingsDo) {
   const StudyFolder folder(two_cases);
-  const tools::LoadedStudy study = tools::load_study(folder.path());
+  const experiment::LoadedStudy study = experiment::load_study(folder.path());
   auto runs = made_up_runs(study, {{1, 2}, {1, 2}});
   const std::string note =
       "cases 'plain', 'quick' do not differ: all runs gave the same result, although their settings differ: check that "
       "the settings have an effect";
-  EXPECT_THAT(tools::StudyResults(study, runs).to_text(), HasSubstr("note: " + note + "\n"));
-  const auto json = nlohmann::json::parse(tools::StudyResults(study, runs).to_json(0));
+  EXPECT_THAT(experiment::StudyResults(study, runs).to_text(), HasSubstr("note: " + note + "\n"));
+  const auto json = nlohmann::json::parse(experiment::StudyResults(study, runs).to_json(0));
   EXPECT_EQ(json["notes"], nlohmann::json::array({note}));
   runs[3].record->run_hash = "another";
-  EXPECT_THAT(tools::StudyResults(study, runs).to_text(), HasSubstr("every figure is the same for every seed"));
+  EXPECT_THAT(experiment::StudyResults(study, runs).to_text(), HasSubstr("every figure is the same for every seed"));
   runs[3].record->metrics["e.rms_m"] = 2.5;
-  EXPECT_THAT(tools::StudyResults(study, runs).to_text(), testing::Not(HasSubstr("do not differ")));
+  EXPECT_THAT(experiment::StudyResults(study, runs).to_text(), testing::Not(HasSubstr("do not differ")));
 }
 
 TEST(StudyConfig, ReadsSeedsAsAListOrARange) {
-  EXPECT_THAT(tools::load_study(StudyFolder("").path()).config.seeds, ElementsAre(1, 2));
-  EXPECT_THAT(tools::load_study(StudyFolder("", "{first: 5, count: 3}").path()).config.seeds, ElementsAre(5, 6, 7));
+  EXPECT_THAT(experiment::load_study(StudyFolder("").path()).config.seeds, ElementsAre(1, 2));
+  EXPECT_THAT(experiment::load_study(StudyFolder("", "{first: 5, count: 3}").path()).config.seeds,
+              ElementsAre(5, 6, 7));
 }
 
 TEST(StudyConfig, CasesChangeTheWorld) {
   const StudyFolder folder(two_cases);
-  const tools::LoadedStudy study = tools::load_study(folder.path());
+  const experiment::LoadedStudy study = experiment::load_study(folder.path());
   EXPECT_THAT(study.config.cases[1].sets(), ElementsAre("physics.step_s=0.002", "name=fast"));
   EXPECT_EQ(study.worlds[0].config.physics.step_s, 0.001);
   EXPECT_EQ(study.worlds[1].config.physics.step_s, 0.002);
@@ -185,7 +186,7 @@ TEST(StudyConfig, WorldIsAFileBesideItOrAShippedOneByName) {
   const ScratchFolder folder;
   const auto world_of = [&](const std::string& world) {
     write(folder.file("study.yaml"), "shoal: 1\nstudy: own\nworld: " + world + "\nseeds: [1]\n");
-    return tools::load_study(folder.file("study.yaml")).config.cases.front().world;
+    return experiment::load_study(folder.file("study.yaml")).config.cases.front().world;
   };
   const std::string shipped =
       std::filesystem::path(test_support::source_path("worlds/minimal.yaml")).lexically_normal();
@@ -199,7 +200,7 @@ TEST(StudyConfig, WorldIsAFileBesideItOrAShippedOneByName) {
 TEST(StudyConfig, ThoseThatAreShippedCanBeRead) {
   int read = 0;
   for (const auto& entry : std::filesystem::directory_iterator(test_support::source_path("worlds/studies"))) {
-    EXPECT_NO_THROW(tools::load_study(entry.path().string())) << entry.path();
+    EXPECT_NO_THROW(experiment::load_study(entry.path().string())) << entry.path();
     ++read;
   }
   EXPECT_GT(read, 0);
@@ -245,10 +246,10 @@ TEST(StudyConfig, NamesNoOtherFilesThanItsWorldMay) {
           "shoal: 1\nrun: {duration_s: 1}\n"
           "objects: [{name: o, fixed: true, parts: [{shape: mesh, mesh: own.obj}]}]\n");
     write(study.folder.file("own.obj"), stone);
-    tools::StudyChanges changes;
+    experiment::StudyChanges changes;
     changes.load.only_own_files = true;
     try {
-      tools::load_study(study.path(), changes);
+      experiment::load_study(study.path(), changes);
       return "";
     } catch (const sim::ConfigError& error) {
       return error.what();
@@ -336,7 +337,7 @@ TEST(StudyConfig, WarnsOnceOfWhatIsWrongInAllCases) {
   const StudyFolder folder("cases: [{name: a}, {name: b}, {name: c}]\n");
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
-  tools::load_study(folder.path());
+  experiment::load_study(folder.path());
   const std::string log = testing::internal::GetCapturedStdout() + testing::internal::GetCapturedStderr();
   const std::string warning = "nothing in this world publishes on 'est'";
   const std::size_t first = log.find(warning);
@@ -354,13 +355,13 @@ TEST(StudyResults, JudgeStatisticsOfCases) {
                            "  - mean(plain.passed) == 0.5\n"                        // 1 < 3, not 3 < 3
                            "  - std(quick.e.rms_m) > 0\n"                           // equal ones
                            "  - mean(quick.e.final_m) > -1\n");                     // no one has it
-  const tools::LoadedStudy study = tools::load_study(folder.path());
+  const experiment::LoadedStudy study = experiment::load_study(folder.path());
   const auto runs = made_up_runs(study, {{1, 3}, {6, 6}});
-  const tools::StudyResults results(study, runs);
+  const experiment::StudyResults results(study, runs);
   std::vector<bool> passed;
   for (const auto& verdict : results.verdicts()) passed.push_back(verdict.passed);
   EXPECT_THAT(passed, ElementsAre(true, false, true, false, true, false, false));
-  EXPECT_EQ(results.judgement(), tools::Judgement::failed);
+  EXPECT_EQ(results.judgement(), experiment::Judgement::failed);
   EXPECT_EQ(results.verdicts()[2].text(),
             "mean(plain.e.rms_m) < 0.5 * mean(quick.e.rms_m) (left 2, right 3, margin 1)");
   EXPECT_THAT(results.to_text(), HasSubstr("FAILED: max(plain.e.rms_m) < 2.5 (left 3, right 2.5, margin -0.5)"));
@@ -388,9 +389,9 @@ TEST(StudyResults, ARuleFailsWhenARunLacksItsFigure) {
                            "  - mean(quick.e.rms_m) == 6\n"
                            "  - mean(plain.e.rms_m) < mean(quick.e.rms_m)\n"
                            "  - mean(plain.e.rms_m) < 10\n");
-  const tools::LoadedStudy study = tools::load_study(folder.path());
+  const experiment::LoadedStudy study = experiment::load_study(folder.path());
   const auto runs = made_up_runs(study, {{1, 3}, {6, std::nan("")}});
-  const tools::StudyResults results(study, runs);
+  const experiment::StudyResults results(study, runs);
   std::vector<bool> passed;
   for (const auto& verdict : results.verdicts()) passed.push_back(verdict.passed);
   EXPECT_THAT(passed, ElementsAre(false, false, false, false, true));
@@ -406,33 +407,33 @@ TEST(StudyResults, ARuleFailsWhenARunLacksItsFigure) {
 
 TEST(StudyResults, WithoutRulesNothingHasPassed) {
   const StudyFolder folder(two_cases);
-  const tools::LoadedStudy study = tools::load_study(folder.path());
+  const experiment::LoadedStudy study = experiment::load_study(folder.path());
   const auto runs = made_up_runs(study, {{1, 3}, {6, 7}});
-  const tools::StudyResults results(study, runs);
+  const experiment::StudyResults results(study, runs);
   EXPECT_THAT(results.to_text(), HasSubstr("not judged: the study has no rules\n"));
   const auto json = nlohmann::json::parse(results.to_json(0));
   EXPECT_TRUE(json["passed"].is_null()) << json["passed"];
   EXPECT_EQ(json.value("judged", true), false);
   const ScratchFolder out;
-  tools::write_study(out.file("study"), study, runs, results, 0);
-  const std::string page = tools::study_report(out.file("study"));
+  experiment::write_study(out.file("study"), study, runs, results, 0);
+  const std::string page = experiment::study_report(out.file("study"));
   EXPECT_THAT(page, HasSubstr("not judged</span>: the study has no rules"));
   EXPECT_THAT(page, testing::Not(HasSubstr("passed</span>")));
 }
 
 TEST(StudyResults, ARunThatNoOneJudgedHasNotPassed) {
   const StudyFolder folder("launch: false\npass: [mean(world.passed) == 1]\n");
-  const tools::LoadedStudy study = tools::load_study(folder.path());
-  auto runs = tools::plan_study(study, "out");
+  const experiment::LoadedStudy study = experiment::load_study(folder.path());
+  auto runs = experiment::plan_study(study, "out");
   const ScratchFolder results_of_runs;
-  for (tools::StudyRun& run : runs) {
-    tools::Summary summary;
+  for (experiment::StudyRun& run : runs) {
+    experiment::Summary summary;
     summary.seed = run.seed;
     if (run.seed == 1) summary.verdicts = {{"a", true}};
-    tools::write_summary(results_of_runs.file(std::to_string(run.seed)), summary);
-    run.record = tools::read_run(results_of_runs.file(std::to_string(run.seed)));
+    experiment::write_summary(results_of_runs.file(std::to_string(run.seed)), summary);
+    run.record = experiment::read_run(results_of_runs.file(std::to_string(run.seed)));
   }
-  const tools::StudyResults results(study, runs);
+  const experiment::StudyResults results(study, runs);
   EXPECT_EQ(results.of("world", "passed").count, 1);
   EXPECT_EQ(results.verdicts().at(0).passed, false);
   EXPECT_EQ(results.verdicts().at(0).text(),
@@ -443,17 +444,17 @@ TEST(StudyResults, ARunThatNoOneJudgedHasNotPassed) {
 
 TEST(StudyResults, CountRunsWithoutAResult) {
   const StudyFolder folder(two_cases);
-  const tools::LoadedStudy study = tools::load_study(folder.path());
+  const experiment::LoadedStudy study = experiment::load_study(folder.path());
   auto runs = made_up_runs(study, {{1, 3}, {6, 7}});
   runs[3].record.reset();
   runs[3].failure = "<b>exit code 4</b>";
-  const tools::StudyResults results(study, runs);
+  const experiment::StudyResults results(study, runs);
   EXPECT_EQ(results.failed_runs(), 1u);
-  EXPECT_EQ(results.judgement(), tools::Judgement::failed);
+  EXPECT_EQ(results.judgement(), experiment::Judgement::failed);
   EXPECT_THAT(results.to_csv(), HasSubstr("quick,2,,,failed,,,,,4,0,,,\n"));
   const ScratchFolder out;
-  tools::write_study(out.file("study"), study, runs, results, 4);
-  const std::string page = tools::study_report(out.file("study"));
+  experiment::write_study(out.file("study"), study, runs, results, 4);
+  const std::string page = experiment::study_report(out.file("study"));
   EXPECT_THAT(page, HasSubstr("quick, seed 2: &lt;b&gt;exit code 4&lt;/b&gt;"));
   EXPECT_THAT(page, HasSubstr("<th scope=\"row\">plain</th><td>2</td><td>2</td>"));
   EXPECT_THAT(page, HasSubstr("<th scope=\"row\">quick</th><td>1 of 2</td><td>6</td>"));

@@ -8,12 +8,12 @@
 
 namespace {
 
+using experiment::KeyEvent;
 using testing::ElementsAre;
-using tools::KeyEvent;
 
 /// Events of bytes: names, with `^` before those with Ctrl and `-` after a release.
 std::vector<std::string> events_of(const std::string& bytes) {
-  tools::KeyEvents keys;
+  experiment::KeyEvents keys;
   std::vector<std::string> events;
   for (const char byte : bytes)
     if (const auto event = keys.next(byte))
@@ -41,7 +41,7 @@ TEST(KeyEvents, ASequenceThatIsBrokenOffDoesNotHideWhatFollows) {
 
 TEST(KeyEvents, AReportOfTheKittyProtocolHasTheReleaseOfAKey) {
   EXPECT_THAT(events_of("\x1b[97;1:1u\x1b[97;1:3u\x1b[99;5u"), ElementsAre("a", "a-", "^c"));
-  tools::KeyEvents keys;
+  experiment::KeyEvents keys;
   for (const char byte : std::string("\x1b[?0u")) EXPECT_FALSE(keys.next(byte));
   EXPECT_TRUE(keys.has_reports());
 }

@@ -7,7 +7,7 @@
 
 namespace {
 
-using tools::KeySequences;
+using experiment::KeySequences;
 
 /// The keys that come of bytes which arrive at once.
 std::string keys_of(const std::string& bytes) {

@@ -45,7 +45,7 @@ TEST_P(ShippedWorld, IsNotWarnedOf) {
   const test_support::LogCapture log;
   const BuiltWorld built(GetParam());
   sim::Warnings warnings;
-  tools::warn_of_processes(built.loaded, warnings);
+  experiment::warn_of_processes(built.loaded, warnings);
   EXPECT_EQ(log.text(), "");
 }
 
@@ -53,7 +53,7 @@ TEST_P(ShippedWorld, IsNotWarnedOf) {
 /// programs are missing here stay where they start.
 TEST_P(ShippedWorld, IsNotWarnedOfAtTheEndOfAShortRun) {
   BuiltWorld built(GetParam());
-  tools::FirstContacts contacts(built.world);
+  experiment::FirstContacts contacts(built.world);
   constexpr int few_steps = 50;
   const sim::Time minute = std::chrono::seconds(61);
   const bool is_quick =
@@ -64,7 +64,7 @@ TEST_P(ShippedWorld, IsNotWarnedOfAtTheEndOfAShortRun) {
     contacts.after_step();
   }
   EXPECT_THAT(sim::end_warnings(built.world, [](const std::string&) { return false; }), testing::IsEmpty());
-  EXPECT_EQ(tools::contacts_text(contacts.all()), "");
+  EXPECT_EQ(experiment::contacts_text(contacts.all()), "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Warnings, ShippedWorld, testing::ValuesIn(shipped_worlds()), [](const auto& world) {

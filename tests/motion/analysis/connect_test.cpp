@@ -10,7 +10,7 @@
 
 namespace {
 
-using tools::ConnectionKind;
+using motion::ConnectionKind;
 
 sim::WorldConfig studio_of_poses() {
   return sim::load_world(test_support::source_path("worlds/ers7_studio.yaml")).config;
@@ -26,30 +26,31 @@ sim::JointValues legs(double swing, double knee) {
   return pose;
 }
 
-tools::ConnectOptions in_one_world() {
-  tools::ConnectOptions options;
+motion::ConnectOptions in_one_world() {
+  motion::ConnectOptions options;
   options.worlds = 0;
   return options;
 }
 
 TEST(Connector, FromStandingToCrouchingTheWayIsStraight) {
-  tools::Connector connector(studio_of_poses(), "dog", tools::held_pose("stand", "ers7", legs(0, 0.5)), in_one_world());
-  const tools::Connection connection = connector.connect(legs(-0.7, 1.5));
+  motion::Connector connector(studio_of_poses(), "dog", motion::held_pose("stand", "ers7", legs(0, 0.5)),
+                              in_one_world());
+  const motion::Connection connection = connector.connect(legs(-0.7, 1.5));
   EXPECT_EQ(connection.kind, ConnectionKind::straight);
   EXPECT_EQ(connection.played, 1);
   ASSERT_EQ(connection.arrivals.size(), 1u);
   EXPECT_LE(connection.arrivals[0].error, in_one_world().arrive_rad);
   // At 1 rad/s the knee takes 1 s; the course of a smooth key is faster in the middle, and within the servo's speed.
   EXPECT_NEAR(connection.motion.end_s(), 1, 1e-9);
-  EXPECT_TRUE(tools::check_motion(connection.motion, *studio_of_poses().vehicles.front().config).empty());
+  EXPECT_TRUE(motion::check_motion(connection.motion, *studio_of_poses().vehicles.front().config).empty());
 }
 
 TEST(Connector, TheStartIsWhereTheMotionBeforeEnds) {
-  sim::JointMotion before = tools::held_pose("before", "ers7", legs(0, 0.5));
+  sim::JointMotion before = motion::held_pose("before", "ers7", legs(0, 0.5));
   before.keys[1].joints = legs(0, 0.8);
   before.keys[1].joints.emplace_back("head_pan", 0.4);
-  tools::Connector connector(studio_of_poses(), "dog", before, in_one_world());
-  const tools::Connection connection = connector.connect(legs(0, 0.5));
+  motion::Connector connector(studio_of_poses(), "dog", before, in_one_world());
+  const motion::Connection connection = connector.connect(legs(0, 0.5));
   ASSERT_EQ(connection.kind, ConnectionKind::straight);
   for (const sim::MotionTrack& track : connection.motion.tracks()) {
     if (track.joint.ends_with("knee")) {
@@ -68,7 +69,7 @@ TEST(Connector, AStartInWhichItFallsIsRefused) {
   // On its back.
   world.vehicles.front().X_WV = sim::make_pose({0, 0, 0.3}, {M_PI, 0, 0});
   try {
-    tools::Connector connector(world, "dog", tools::held_pose("stand", "ers7", legs(0, 0.5)), in_one_world());
+    motion::Connector connector(world, "dog", motion::held_pose("stand", "ers7", legs(0, 0.5)), in_one_world());
     FAIL();
   } catch (const sim::ConfigError& error) {
     EXPECT_STREQ(error.what(), "vehicle 'dog' does not stand still at the end of 'stand'");
@@ -76,16 +77,17 @@ TEST(Connector, AStartInWhichItFallsIsRefused) {
 }
 
 TEST(Connector, AnUnknownJointIsRefused) {
-  tools::Connector connector(studio_of_poses(), "dog", tools::held_pose("stand", "ers7", legs(0, 0.5)), in_one_world());
+  motion::Connector connector(studio_of_poses(), "dog", motion::held_pose("stand", "ers7", legs(0, 0.5)),
+                              in_one_world());
   EXPECT_THROW(connector.connect({{"lf_wheel", 0}}), sim::ConfigError);
 }
 
 TEST(Connector, AnEndThatIsNotReachedIsSearchedUntilTheCandidatesAreUsedUp) {
-  tools::ConnectOptions options = in_one_world();
+  motion::ConnectOptions options = in_one_world();
   options.arrive_rad = 0;  // a joint is never exactly there
   options.candidates = 12;
-  tools::Connector connector(studio_of_poses(), "dog", tools::held_pose("stand", "ers7", legs(0, 0.5)), options);
-  const tools::Connection connection = connector.connect(legs(-0.7, 1.5));
+  motion::Connector connector(studio_of_poses(), "dog", motion::held_pose("stand", "ers7", legs(0, 0.5)), options);
+  const motion::Connection connection = connector.connect(legs(-0.7, 1.5));
   EXPECT_EQ(connection.kind, ConnectionKind::none);
   EXPECT_LT(connection.value, 0);
   // Straight, slower, by the stance, and a generation: 4 + 3 ln n candidates for 12 joints and two times.
@@ -94,23 +96,23 @@ TEST(Connector, AnEndThatIsNotReachedIsSearchedUntilTheCandidatesAreUsedUp) {
 
 TEST(Connector, RandomPairsOfPosesAreConnectedTheSameWithAnyNumberOfThreads) {
   const sim::WorldConfig world = studio_of_poses();
-  const tools::StandingPoses poses = tools::standing_poses(world, "dog", 4, 7);
+  const verification::StandingPoses poses = verification::standing_poses(world, "dog", 4, 7);
   ASSERT_EQ(poses.poses.size(), 4u);
   for (std::size_t i = 0; i < 4; i += 2) {
-    std::vector<tools::Connection> found;
+    std::vector<motion::Connection> found;
     for (const int threads : {1, 2}) {
       if (i > 0 && threads > 1) continue;
-      tools::ConnectOptions options;
+      motion::ConnectOptions options;
       options.worlds = 1;
       options.threads = threads;
-      tools::Connector connector(world, "dog", tools::held_pose("from", "ers7", poses.poses[i]), options);
+      motion::Connector connector(world, "dog", motion::held_pose("from", "ers7", poses.poses[i]), options);
       found.push_back(connector.connect(poses.poses[i + 1]));
     }
     EXPECT_NE(found[0].kind, ConnectionKind::none);
     EXPECT_EQ(found[0].kind, found.back().kind);
     EXPECT_EQ(found[0].played, found.back().played);
     EXPECT_EQ(sim::motion_text(found[0].motion), sim::motion_text(found.back().motion));
-    for (const tools::Arrival& arrival : found[0].arrivals) EXPECT_LE(arrival.error, 2 * M_PI / 180);
+    for (const motion::Arrival& arrival : found[0].arrivals) EXPECT_LE(arrival.error, 2 * M_PI / 180);
   }
 }
 

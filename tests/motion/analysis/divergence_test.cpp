@@ -46,8 +46,8 @@ sim::JointMotion held_level() {
   return motion;
 }
 
-tools::DivergenceOptions options_with_threads(int threads) {
-  tools::DivergenceOptions options;
+motion::DivergenceOptions options_with_threads(int threads) {
+  motion::DivergenceOptions options;
   options.duration_s = 3;
   options.row_s = 0.02;
   options.threads = threads;
@@ -55,10 +55,11 @@ tools::DivergenceOptions options_with_threads(int threads) {
 }
 
 TEST(Divergence, IsThatOfTheModelThatIsTooWeakAndOfNoOther) {
-  const tools::Divergence divergence = tools::divergence_of(loaded_arm(), "arm", held_level(), options_with_threads(1));
+  const motion::Divergence divergence =
+      motion::divergence_of(loaded_arm(), "arm", held_level(), options_with_threads(1));
   ASSERT_EQ(divergence.curves.size(), 5u);
   ASSERT_EQ(divergence.rows(), 151u);
-  for (const tools::DivergenceCurve& curve : divergence.curves) {
+  for (const motion::DivergenceCurve& curve : divergence.curves) {
     EXPECT_LT(curve.fell_s, 0) << curve.model;
     const double greatest_m = *std::max_element(curve.distance_m.begin(), curve.distance_m.end());
     if (curve.model != "effort -20 %") {
@@ -76,8 +77,8 @@ TEST(Divergence, IsThatOfTheModelThatIsTooWeakAndOfNoOther) {
 }
 
 TEST(Divergence, IsTheSameForAnyNumberOfThreads) {
-  const tools::Divergence one = tools::divergence_of(loaded_arm(), "arm", held_level(), options_with_threads(1));
-  const tools::Divergence two = tools::divergence_of(loaded_arm(), "arm", held_level(), options_with_threads(2));
+  const motion::Divergence one = motion::divergence_of(loaded_arm(), "arm", held_level(), options_with_threads(1));
+  const motion::Divergence two = motion::divergence_of(loaded_arm(), "arm", held_level(), options_with_threads(2));
   for (std::size_t i = 0; i < one.curves.size(); ++i)
     EXPECT_EQ(one.curves[i].distance_m, two.curves[i].distance_m) << one.curves[i].model;
 }

@@ -9,8 +9,8 @@ namespace {
 
 struct Studio {
   sim::WorldConfig world = sim::load_world(test_support::source_path("worlds/ers7_studio.yaml")).config;
-  std::unique_ptr<tools::GaitFamily> gait = tools::make_gait("half_ellipse", *world.vehicles.front().config);
-  tools::EvolveOptions options;
+  std::unique_ptr<motion::GaitFamily> gait = motion::make_gait("half_ellipse", *world.vehicles.front().config);
+  motion::EvolveOptions options;
 
   Studio() {
     options.population = 4;
@@ -18,14 +18,14 @@ struct Studio {
     options.walk = {.warm_up_s = 0.2, .measured_s = 0.5};
     options.threads = 2;
   }
-  tools::Evolution evolution() const { return {world, "dog", *gait, options}; }
+  motion::Evolution evolution() const { return {world, "dog", *gait, options}; }
 };
 
 TEST(Walk, ASlowTrotGoesForward) {
   Studio studio;
   studio.options.worlds = 0;
   studio.options.walk = {};
-  const tools::Candidate start = studio.evolution().start();
+  const motion::Candidate start = studio.evolution().start();
   ASSERT_EQ(start.walks.size(), 1u);
   EXPECT_FALSE(start.walks[0]->fell);
   // It can be at most as fast as its feet on the ground: the length in half of 0.704 s.
@@ -45,8 +45,8 @@ TEST(Walk, AVehicleOnItsBellyHasFallen) {
   spread.keys[1].at_s = 1;
   for (const char* joint : {"lf_flap", "rf_flap", "lh_flap", "rh_flap"})
     for (sim::MotionKey& key : spread.keys) key.joints.emplace_back(joint, 1.5);
-  const tools::Walk walk =
-      tools::measured_walk(tools::world_for_walks(studio.world), "dog", spread, studio.options.walk);
+  const motion::Walk walk =
+      motion::measured_walk(motion::world_for_walks(studio.world), "dog", spread, studio.options.walk);
   EXPECT_TRUE(walk.fell);
   EXPECT_LE(walk.value_mps, -0.1);
   EXPECT_GE(walk.value_mps, -0.3);
@@ -55,10 +55,10 @@ TEST(Walk, AVehicleOnItsBellyHasFallen) {
 TEST(Evolution, TheBestIsTheSameForAnyNumberOfThreads) {
   Studio studio;
   studio.options.candidates = 8;
-  std::vector<tools::Candidate> best;
+  std::vector<motion::Candidate> best;
   for (const int threads : {1, 2}) {
     studio.options.threads = threads;
-    tools::Evolution evolution = studio.evolution();
+    motion::Evolution evolution = studio.evolution();
     while (evolution.advance()) {
     }
     best.push_back(evolution.best_of_generation());
@@ -70,12 +70,12 @@ TEST(Evolution, TheBestIsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(Evolution, TwentyCandidatesAreNotWorseThanTheStart) {
-  for (const auto method : {tools::SearchMethod::cma_es, tools::SearchMethod::genetic}) {
+  for (const auto method : {motion::SearchMethod::cma_es, motion::SearchMethod::genetic}) {
     Studio studio;
     studio.options.method = method;
     studio.options.candidates = 20;
     studio.options.population = 10;
-    tools::Evolution evolution = studio.evolution();
+    motion::Evolution evolution = studio.evolution();
     while (evolution.advance()) {
     }
     EXPECT_EQ(evolution.tried(), 20);
@@ -86,7 +86,7 @@ TEST(Evolution, TwentyCandidatesAreNotWorseThanTheStart) {
     // Its value is that of its worst world, and another walk is the same.
     const auto again = evolution.walks_of_best(evolution.perturbations());
     double worst_mps = 1;
-    for (const tools::Walk& walk : again) worst_mps = std::min(worst_mps, walk.value_mps);
+    for (const motion::Walk& walk : again) worst_mps = std::min(worst_mps, walk.value_mps);
     EXPECT_EQ(worst_mps, evolution.best().value_mps);
     EXPECT_EQ(again[1].state_hash, evolution.best().walks[1]->state_hash);
   }

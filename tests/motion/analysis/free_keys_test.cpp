@@ -28,16 +28,16 @@ sim::JointMotion keyed_loop() {
   return motion;
 }
 
-std::vector<double> start_of(const tools::FreeKeys& gait) {
+std::vector<double> start_of(const motion::FreeKeys& gait) {
   std::vector<double> values;
-  for (const tools::GaitNumber& number : gait.numbers()) values.push_back(number.start);
+  for (const motion::GaitNumber& number : gait.numbers()) values.push_back(number.start);
   return values;
 }
 
 TEST(FreeKeys, TimesAndValuesAreTheNumbers) {
-  const tools::FreeKeys gait(keyed_loop(), keyed_dog());
+  const motion::FreeKeys gait(keyed_loop(), keyed_dog());
   std::vector<std::string> names;
-  for (const tools::GaitNumber& number : gait.numbers()) names.push_back(number.name);
+  for (const motion::GaitNumber& number : gait.numbers()) names.push_back(number.name);
   // The last knee is that of the first key.
   EXPECT_EQ(names, (std::vector<std::string>{"key2.after_s", "key3.after_s", "key1.lf_knee", "key2.lf_knee",
                                              "key2.lf_swing"}));
@@ -47,7 +47,7 @@ TEST(FreeKeys, TimesAndValuesAreTheNumbers) {
 }
 
 TEST(FreeKeys, TheStartIsTheFile) {
-  const tools::FreeKeys gait(keyed_loop(), keyed_dog());
+  const motion::FreeKeys gait(keyed_loop(), keyed_dog());
   const auto found = gait.motion(start_of(gait)).tracks(), file = keyed_loop().tracks();
   ASSERT_EQ(found.size(), file.size());
   for (std::size_t i = 0; i < file.size(); ++i)
@@ -56,12 +56,12 @@ TEST(FreeKeys, TheStartIsTheFile) {
 
 TEST(FreeKeys, TheSeamStaysClosedAndTheServosWithinTheirSpeeds) {
   const sim::VehicleConfig vehicle = keyed_dog();
-  const tools::FreeKeys gait(keyed_loop(), vehicle);
+  const motion::FreeKeys gait(keyed_loop(), vehicle);
   for (unsigned bits = 0; bits < 32; ++bits) {
     std::vector<double> values;
     for (std::size_t i = 0; i < 5; ++i)
       values.push_back((bits >> i & 1) != 0 ? gait.numbers()[i].high : gait.numbers()[i].low);
-    const auto findings = tools::check_motion(gait.motion(values), vehicle);
+    const auto findings = motion::check_motion(gait.motion(values), vehicle);
     EXPECT_TRUE(findings.empty()) << bits << ": " << findings.front().text();
   }
 }
@@ -69,7 +69,7 @@ TEST(FreeKeys, TheSeamStaysClosedAndTheServosWithinTheirSpeeds) {
 TEST(FreeKeys, AMotionThatDoesNotLoopOrAnUnknownJointIsRefused) {
   const auto error_of = [](const sim::JointMotion& motion) -> std::string {
     try {
-      tools::FreeKeys gait(motion, keyed_dog());
+      motion::FreeKeys gait(motion, keyed_dog());
     } catch (const sim::ConfigError& error) {
       return error.what();
     }

@@ -16,8 +16,8 @@
 namespace test::ers7 {
 namespace {
 
-using tools::MotionFinding;
-using tools::MotionRule;
+using motion::MotionFinding;
+using motion::MotionRule;
 
 const sim::VehicleConfig& loaded_dog() {
   static const sim::VehicleConfig vehicle = sim::load_vehicle(test_support::source_path("vehicles/ers7.yaml"), {});
@@ -34,7 +34,7 @@ std::vector<MotionFinding> findings_of(const std::vector<std::pair<double, sim::
     key.at_s = at_s;
     for (const auto& [joint, value_deg] : values) key.joints.emplace_back(joint, value_deg / degrees);
   }
-  std::vector<MotionFinding> found = tools::check_motion(motion, loaded_dog());
+  std::vector<MotionFinding> found = motion::check_motion(motion, loaded_dog());
   std::erase_if(found, [&](const MotionFinding& one) { return one.rule != rule; });
   return found;
 }
@@ -142,7 +142,7 @@ TEST(MotionCheckOfErs7, FindsEachSpeedBrokenOnce) {
 
 /// The dog of the thesis, of 15 axes, plays all of the twelve motions but the one of the tail and ears.
 TEST(Ers7Seed, PlaysTheMotionsOfItsJoints) {
-  tools::StageOptions options;
+  motion::StageOptions options;
   options.world = test_support::source_path("worlds/ers7_seed_studio.yaml");
   options.kept_s = 0;
   int played = 0;
@@ -151,17 +151,17 @@ TEST(Ers7Seed, PlaysTheMotionsOfItsJoints) {
     SCOPED_TRACE(motion.name);
     if (motion.name == "wag") {
       try {
-        tools::MotionStage stage(options, motion);
+        motion::MotionStage stage(options, motion);
         FAIL();
       } catch (const sim::ConfigError& error) {
         EXPECT_THAT(error.what(), testing::HasSubstr("motion 'wag' names joint 'tail_tilt', which is not a servo"));
       }
       continue;
     }
-    tools::MotionStage stage(options, motion);
-    tools::MotionTracking tracking;
-    stage.after_step = [&](tools::MotionStage& now) { tracking.add(now); };
-    EXPECT_TRUE(stage.play_out(0, tools::end_limit_s(motion)));
+    motion::MotionStage stage(options, motion);
+    motion::MotionTracking tracking;
+    stage.after_step = [&](motion::MotionStage& now) { tracking.add(now); };
+    EXPECT_TRUE(stage.play_out(0, motion::end_limit_s(motion)));
     EXPECT_FALSE(tracking.has_fallen());
     EXPECT_LT(tracking.greatest_tilt_rad() * degrees, 25);  // the bound of ers7_show
     ++played;

@@ -9,7 +9,7 @@
 
 namespace {
 
-using tools::MotionRule;
+using motion::MotionRule;
 
 /// The leg with a range of +-1 rad of its knee, 2 rad/s, 20 rad/s^2, and at least -0.2 rad with the hip from 0.5 on.
 const sim::VehicleConfig& leg() {
@@ -30,7 +30,7 @@ sim::JointMotion motion(const std::vector<std::pair<double, sim::JointValues>>& 
 
 std::vector<MotionRule> rules_of(const sim::JointMotion& motion) {
   std::vector<MotionRule> rules;
-  for (const tools::MotionFinding& finding : tools::check_motion(motion, leg())) rules.push_back(finding.rule);
+  for (const motion::MotionFinding& finding : motion::check_motion(motion, leg())) rules.push_back(finding.rule);
   return rules;
 }
 
@@ -56,7 +56,7 @@ TEST(MotionCheck, FindsEachRuleBrokenOnce) {
 }
 
 TEST(MotionCheck, ReportsTheWorstFrameAndItsKey) {
-  const auto findings = tools::check_motion(
+  const auto findings = motion::check_motion(
       motion({{0, {{"knee", 0}}}, {1, {{"knee", 1.2}}}, {2, {{"knee", 1.5}}}, {4, {{"knee", 0}}}}), leg());
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_NEAR(findings[0].at_s, 2, 1e-9);
@@ -69,8 +69,8 @@ TEST(MotionCheck, ReportsTheWorstFrameAndItsKey) {
 TEST(MotionCheck, MendsRangesAndVelocities) {
   sim::JointMotion fast = motion({{0, {{"hip", 0}, {"knee", 0}}}, {0.01, {{"hip", 1}, {"knee", 3}}}});
   fast.ease = sim::Easing::linear;
-  const sim::JointMotion mended = tools::mended(fast, leg());
-  for (const tools::MotionFinding& finding : tools::check_motion(mended, leg()))
+  const sim::JointMotion mended = motion::mended(fast, leg());
+  for (const motion::MotionFinding& finding : motion::check_motion(mended, leg()))
     EXPECT_EQ(finding.rule, MotionRule::acceleration) << finding.text();
   EXPECT_GE(mended.end_s(), 1 / 50.0);  // 1 rad at 50 rad/s
   EXPECT_LE(mended.end_s(), 1 / 50.0 + 0.008);

@@ -46,7 +46,7 @@ std::string error_of(Action action) {
   try {
     action();
     return {};
-  } catch (const tools::EditError& error) {
+  } catch (const motion::EditError& error) {
     return error.what();
   }
 }
@@ -54,7 +54,7 @@ std::string error_of(Action action) {
 TEST(MotionEdit, TrimKeepsThePartAsItWas) {
   for (const Easing ease : {Easing::linear, Easing::cosine, Easing::smooth, Easing::spline}) {
     const sim::JointMotion motion = two_joints(ease);
-    const sim::JointMotion part = tools::trimmed(motion, 0.4, 2.4);
+    const sim::JointMotion part = motion::trimmed(motion, 0.4, 2.4);
     EXPECT_NEAR(part.end_s(), 2, 1e-9);
     // Cut segments are linear between frames of 8 ms: the error is at most their curvature (below 8 / s^2) times
     // (8 ms)^2 / 8, with 0.4 s and 2.4 s at whole frames.
@@ -63,7 +63,7 @@ TEST(MotionEdit, TrimKeepsThePartAsItWas) {
 }
 
 TEST(MotionEdit, TrimMovesNotesWithTheirKeys) {
-  const sim::JointMotion part = tools::trimmed(two_joints(), 0.5, 3);
+  const sim::JointMotion part = motion::trimmed(two_joints(), 0.5, 3);
   ASSERT_EQ(part.keys.size(), 3u);
   EXPECT_NEAR(part.keys[1].at_s, 0.5, 1e-9);
   EXPECT_EQ(part.keys[1].note, "top");
@@ -72,7 +72,7 @@ TEST(MotionEdit, TrimMovesNotesWithTheirKeys) {
 
 TEST(MotionEdit, CutRemovesAPartAndContinuesWithWhatFollows) {
   const sim::JointMotion motion = two_joints();
-  const sim::JointMotion rest = tools::without(motion, 0.5, 2);
+  const sim::JointMotion rest = motion::without(motion, 0.5, 2);
   EXPECT_NEAR(rest.end_s(), 1.5, 1e-9);
   EXPECT_LE(difference(rest, motion, 0, 0.4, 0), 1e-9);
   EXPECT_LE(difference(rest, motion, 0.504, 1.5, 1.5), 1e-9);
@@ -80,7 +80,7 @@ TEST(MotionEdit, CutRemovesAPartAndContinuesWithWhatFollows) {
 
 TEST(MotionEdit, AppendMovesToTheOtherWithinTheGap) {
   const sim::JointMotion motion = two_joints();
-  const sim::JointMotion both = tools::appended(motion, motion, 0.5);
+  const sim::JointMotion both = motion::appended(motion, motion, 0.5);
   EXPECT_NEAR(both.end_s(), 6.5, 1e-9);
   EXPECT_LE(difference(motion, both, 0, 3, 0), 1e-9);
   EXPECT_LE(difference(motion, both, 0, 3, 3.5), 1e-9);
@@ -91,12 +91,12 @@ TEST(MotionEdit, MergeAddsJointsAndRefusesTwoOfAKind) {
   sim::JointMotion head;
   head.name = "head";
   head.keys = {{0, "", {{"pan", 0}}, {}, "", {}}, {2, "", {{"pan", 1}}, {}, "", {}}};
-  const sim::JointMotion both = tools::merged(two_joints(), head, false);
+  const sim::JointMotion both = motion::merged(two_joints(), head, false);
   EXPECT_NEAR(value(both, "pan", 1), 0.5, 1e-9);
   EXPECT_NEAR(value(both, "a", 1), 1, 1e-9);
-  EXPECT_THAT(error_of([&] { tools::merged(two_joints(), two_joints(), false); }),
+  EXPECT_THAT(error_of([&] { motion::merged(two_joints(), two_joints(), false); }),
               HasSubstr("both motions have joint 'a'"));
-  EXPECT_NO_THROW(tools::merged(two_joints(), two_joints(), true));
+  EXPECT_NO_THROW(motion::merged(two_joints(), two_joints(), true));
 }
 
 TEST(MotionEdit, MirrorExchangesSidesAndTwiceItIsTheSame) {
@@ -105,14 +105,14 @@ TEST(MotionEdit, MirrorExchangesSidesAndTwiceItIsTheSame) {
   motion.poses = {{"lifted", {{"lf_knee", 1}}}};
   motion.keys = {{0, "", {{"lf_knee", 0}, {"rf_knee", 0.2}, {"head_pan", 0.5}}, {}, "", {}},
                  {1, "lifted", {{"head_pan", -0.3}}, {}, "", {}}};
-  const tools::MirrorRule rule{{{"lf_", "rf_"}}, {"head_pan"}};
-  const sim::JointMotion other = tools::mirrored(motion, rule);
+  const motion::MirrorRule rule{{{"lf_", "rf_"}}, {"head_pan"}};
+  const sim::JointMotion other = motion::mirrored(motion, rule);
   EXPECT_NEAR(value(other, "rf_knee", 1), 1, 1e-15);
   EXPECT_NEAR(value(other, "lf_knee", 0), 0.2, 1e-15);
   EXPECT_NEAR(value(other, "head_pan", 1), 0.3, 1e-15);
-  EXPECT_EQ(sim::motion_text(tools::mirrored(other, rule)), sim::motion_text(motion));
+  EXPECT_EQ(sim::motion_text(motion::mirrored(other, rule)), sim::motion_text(motion));
   // Half a cycle and its mirror image.
-  const sim::JointMotion cycle = tools::with_mirrored_half(motion, rule);
+  const sim::JointMotion cycle = motion::with_mirrored_half(motion, rule);
   EXPECT_NEAR(cycle.end_s(), 2, 1e-9);
   EXPECT_NEAR(value(cycle, "lf_knee", 0.5), 0.5, 1e-9);
   EXPECT_NEAR(value(cycle, "rf_knee", 1.5), value(motion, "lf_knee", 0.5), 1e-9);
@@ -120,19 +120,19 @@ TEST(MotionEdit, MirrorExchangesSidesAndTwiceItIsTheSame) {
 }
 
 TEST(MotionEdit, TimesMove) {
-  EXPECT_NEAR(value(tools::shifted(two_joints(), 0.5, {"a"}), "a", 1.5), 1, 1e-9);
-  EXPECT_NEAR(value(tools::shifted(two_joints(), 0.5, {"a"}), "b", 3), 4, 1e-9);
-  EXPECT_THAT(error_of([&] { tools::shifted(two_joints(), -0.5, {}); }), HasSubstr("joint 'a' would start at -0.5 s"));
-  EXPECT_NEAR(tools::stretched(two_joints(), 2).end_s(), 6, 1e-9);
-  EXPECT_NEAR(value(tools::stretched(two_joints(), 2), "a", 2), 1, 1e-9);
-  EXPECT_NEAR(value(tools::retimed(two_joints(), 1, 2), "a", 2), 1, 1e-9);
-  EXPECT_THAT(error_of([&] { tools::retimed(two_joints(), 1, 3.5); }),
+  EXPECT_NEAR(value(motion::shifted(two_joints(), 0.5, {"a"}), "a", 1.5), 1, 1e-9);
+  EXPECT_NEAR(value(motion::shifted(two_joints(), 0.5, {"a"}), "b", 3), 4, 1e-9);
+  EXPECT_THAT(error_of([&] { motion::shifted(two_joints(), -0.5, {}); }), HasSubstr("joint 'a' would start at -0.5 s"));
+  EXPECT_NEAR(motion::stretched(two_joints(), 2).end_s(), 6, 1e-9);
+  EXPECT_NEAR(value(motion::stretched(two_joints(), 2), "a", 2), 1, 1e-9);
+  EXPECT_NEAR(value(motion::retimed(two_joints(), 1, 2), "a", 2), 1, 1e-9);
+  EXPECT_THAT(error_of([&] { motion::retimed(two_joints(), 1, 3.5); }),
               HasSubstr("between its neighbors, at 0 s and 3 s"));
-  EXPECT_THAT(error_of([&] { tools::retimed(two_joints(), 1.1, 2); }), HasSubstr("no key is at 1.1 s"));
+  EXPECT_THAT(error_of([&] { motion::retimed(two_joints(), 1.1, 2); }), HasSubstr("no key is at 1.1 s"));
 }
 
 TEST(MotionEdit, SmoothKeepsTheEndsAndRoundsTheCorner) {
-  const sim::JointMotion smooth = tools::smoothed(two_joints(), 0.2);
+  const sim::JointMotion smooth = motion::smoothed(two_joints(), 0.2);
   EXPECT_NEAR(value(smooth, "a", 0), 0, 1e-12);
   EXPECT_NEAR(value(smooth, "a", 3), 0, 1e-12);
   // Over 12 frames to each side, rising by 1 and falling by 0.5 per second: mean fall 0.75 * 8 ms * (12 * 13 / 25).
@@ -141,27 +141,27 @@ TEST(MotionEdit, SmoothKeepsTheEndsAndRoundsTheCorner) {
 
 TEST(MotionEdit, SimplifyFindsTheKeysOfSampledLines) {
   sim::JointMotion sampled = two_joints();
-  sampled = tools::with_tracks(sampled, sim::sampled(sampled.tracks(), 3, 0.008), [](double t_s) { return t_s; });
+  sampled = motion::with_tracks(sampled, sim::sampled(sampled.tracks(), 3, 0.008), [](double t_s) { return t_s; });
   EXPECT_EQ(sampled.keys.size(), 376u);
-  const sim::JointMotion simple = tools::simplified(sampled, 1e-6);
+  const sim::JointMotion simple = motion::simplified(sampled, 1e-6);
   EXPECT_EQ(simple.keys.size(), 3u);
   EXPECT_LE(difference(simple, two_joints(), 0, 3, 0), 1e-6);
 }
 
 TEST(MotionEdit, SetAndPoseAddKeysAndNames) {
-  const sim::JointMotion set = tools::with_values(two_joints(), 2, {{"a", 9}, {"c", 1}});
+  const sim::JointMotion set = motion::with_values(two_joints(), 2, {{"a", 9}, {"c", 1}});
   EXPECT_NEAR(value(set, "a", 2), 9, 1e-12);
   EXPECT_NEAR(value(set, "b", 2), value(two_joints(), "b", 2), 1e-12);
   EXPECT_NEAR(value(set, "c", 0), 1, 1e-12);
-  const sim::JointMotion named = tools::with_pose(two_joints(), "middle", 1.5);
+  const sim::JointMotion named = motion::with_pose(two_joints(), "middle", 1.5);
   ASSERT_NE(named.find_pose("middle"), nullptr);
   EXPECT_NEAR(named.find_pose("middle")->joints[1].second, 3, 1e-12);
 }
 
 TEST(MotionEdit, RefusesPartsOutsideOfTheMotion) {
-  EXPECT_THAT(error_of([] { tools::trimmed(two_joints(), 2, 4); }), HasSubstr("from 0 to 3 s, got 2 to 4"));
-  EXPECT_THAT(error_of([] { tools::without(two_joints(), 0, 3); }), HasSubstr("nothing of the motion would be left"));
-  EXPECT_THAT(error_of([] { tools::stretched(two_joints(), 0); }), HasSubstr("must be > 0, got 0"));
+  EXPECT_THAT(error_of([] { motion::trimmed(two_joints(), 2, 4); }), HasSubstr("from 0 to 3 s, got 2 to 4"));
+  EXPECT_THAT(error_of([] { motion::without(two_joints(), 0, 3); }), HasSubstr("nothing of the motion would be left"));
+  EXPECT_THAT(error_of([] { motion::stretched(two_joints(), 0); }), HasSubstr("must be > 0, got 0"));
 }
 
 TEST(MotionEdit, ChangesOfTheWorldMoveWithTheMotion) {
@@ -175,11 +175,11 @@ TEST(MotionEdit, ChangesOfTheWorldMoveWithTheMotion) {
     return all;
   };
   using testing::ElementsAre;
-  EXPECT_THAT(times(tools::trimmed(motion, 4, 6)), ElementsAre(0, 1));
-  EXPECT_THAT(times(tools::without(motion, 4, 6)), ElementsAre(1, 4, 7));
-  EXPECT_THAT(times(tools::shifted(motion, 3, {})), ElementsAre(4, 8, 12));
-  EXPECT_THAT(times(tools::shifted(motion, 3, {"a"})), ElementsAre(1, 5, 9));
-  EXPECT_THAT(times(tools::appended(motion, motion, 1)), ElementsAre(1, 5, 9, 12, 16, 20));
+  EXPECT_THAT(times(motion::trimmed(motion, 4, 6)), ElementsAre(0, 1));
+  EXPECT_THAT(times(motion::without(motion, 4, 6)), ElementsAre(1, 4, 7));
+  EXPECT_THAT(times(motion::shifted(motion, 3, {})), ElementsAre(4, 8, 12));
+  EXPECT_THAT(times(motion::shifted(motion, 3, {"a"})), ElementsAre(1, 5, 9));
+  EXPECT_THAT(times(motion::appended(motion, motion, 1)), ElementsAre(1, 5, 9, 12, 16, 20));
 }
 
 sim::ConfigNode action(const std::string& text) {
@@ -196,7 +196,7 @@ TEST(MotionEdit, MergeKeepsTheChangesOfBothAndTheirSliders) {
   head.keys = {{0, "", {{"b", 0.5}}, {}, "", {}}, {3, "", {{"b", 1}}, {}, "", {}}};
   head.sliders = {"b"};
   head.changes = {{0.5, action("{remove: ball}")}, {1, action("{remove: crate}")}, {1.5, action("{remove: box}")}};
-  const sim::JointMotion both = tools::merged(legs, head, false);
+  const sim::JointMotion both = motion::merged(legs, head, false);
   std::vector<std::pair<double, std::string>> changes;
   for (const sim::MotionChange& change : both.changes)
     changes.emplace_back(change.at_s, change.action.entries.at(0).value.scalar);
@@ -205,7 +205,7 @@ TEST(MotionEdit, MergeKeepsTheChangesOfBothAndTheirSliders) {
   // The crate can be removed once only.
   EXPECT_THAT(changes, ElementsAre(Pair(0.5, "ball"), Pair(1, "crate"), Pair(1.5, "block"), Pair(1.5, "box")));
   EXPECT_THAT(both.sliders, ElementsAre("b"));
-  EXPECT_THAT(tools::appended(legs, head, 1).sliders, ElementsAre("b"));
+  EXPECT_THAT(motion::appended(legs, head, 1).sliders, ElementsAre("b"));
 }
 
 }  // namespace

@@ -36,8 +36,8 @@ std::string text_of(const std::string& path) {
 TEST(MotionFile, UndoAndRedoGoThroughItsVersions) {
   const test_support::ScratchFolder folder;
   const std::string path = folder.file("m.yaml");
-  const tools::MotionHistory history(path);
-  tools::write_motion(path, with_end(1));
+  const motion::MotionHistory history(path);
+  motion::write_motion(path, with_end(1));
   for (const double value : {2.0, 3.0}) {
     history.replace(with_end(value));
   }
@@ -61,8 +61,8 @@ TEST(MotionFile, UndoAndRedoGoThroughItsVersions) {
 TEST(MotionFile, UndoAndRedoNameTheOperation) {
   const test_support::ScratchFolder folder;
   const std::string path = folder.file("m.yaml");
-  const tools::MotionHistory history(path);
-  tools::write_motion(path, with_end(1));
+  const motion::MotionHistory history(path);
+  motion::write_motion(path, with_end(1));
   history.replace(with_end(2), "scale --by 2");
   history.replace(with_end(3), "set a=3");
   history.replace(with_end(4));
@@ -78,11 +78,11 @@ TEST(MotionFile, UndoAndRedoNameTheOperation) {
 TEST(MotionFile, ThatWouldNotBeReadAgainIsFound) {
   const test_support::ScratchFolder folder;
   const std::string path = folder.file("m.yaml");
-  EXPECT_NO_THROW(tools::check_readable(path, with_end(1)));
+  EXPECT_NO_THROW(motion::check_readable(path, with_end(1)));
   for (const std::string& name : {std::string("caf\xe9"), std::string("a\0b", 3), std::string(256, 'x')}) {
     sim::JointMotion motion = with_end(1);
     for (sim::MotionKey& key : motion.keys) key.joints[0].first = name;
-    EXPECT_THROW(tools::check_readable(path, motion), tools::EditError) << name;
+    EXPECT_THROW(motion::check_readable(path, motion), motion::EditError) << name;
   }
   EXPECT_FALSE(std::filesystem::exists(path));
 }
@@ -90,8 +90,8 @@ TEST(MotionFile, ThatWouldNotBeReadAgainIsFound) {
 TEST(MotionFile, ManyKeysBecomeFramesBesideItWhichGoBackToo) {
   const test_support::ScratchFolder folder;
   const std::string path = folder.file("m.yaml");
-  const tools::MotionHistory history(path);
-  tools::write_motion(path, with_end(1, 2000));
+  const motion::MotionHistory history(path);
+  motion::write_motion(path, with_end(1, 2000));
   EXPECT_TRUE(std::filesystem::exists(folder.file("m.csv")));
   EXPECT_EQ(sim::load_motion(path).frames[0].keys.size(), 2000u);
   history.replace(with_end(5, 2000));
@@ -103,28 +103,28 @@ TEST(MotionFile, ManyKeysBecomeFramesBesideItWhichGoBackToo) {
 TEST(MotionFile, ACsvFileThatIsNotTheMotionsOwnIsForeignAndStaysWhenItGoesBack) {
   const test_support::ScratchFolder folder;
   const std::string path = folder.file("m.yaml"), csv = folder.file("m.csv");
-  const tools::MotionHistory history(path);
-  tools::write_motion(path, with_end(1));
-  EXPECT_EQ(tools::foreign_frames(path), "");
+  const motion::MotionHistory history(path);
+  motion::write_motion(path, with_end(1));
+  EXPECT_EQ(motion::foreign_frames(path), "");
   history.replace(with_end(2));
   write_text(csv, "measured\n");
-  EXPECT_EQ(tools::foreign_frames(path), csv);
-  EXPECT_EQ(tools::foreign_frames(path, with_end(1, 2000)), csv);
-  EXPECT_EQ(tools::foreign_frames(path, with_end(1)), "");  // few keys need no frames
+  EXPECT_EQ(motion::foreign_frames(path), csv);
+  EXPECT_EQ(motion::foreign_frames(path, with_end(1, 2000)), csv);
+  EXPECT_EQ(motion::foreign_frames(path, with_end(1)), "");  // few keys need no frames
   history.undo();
   EXPECT_EQ(end_of(path), 1);
   EXPECT_EQ(text_of(csv), "measured\n");
   // Its own frames belong to it.
   std::filesystem::remove(csv);
-  tools::write_motion(path, with_end(1, 2000));
-  EXPECT_EQ(tools::foreign_frames(path), "");
+  motion::write_motion(path, with_end(1, 2000));
+  EXPECT_EQ(motion::foreign_frames(path), "");
 }
 
 TEST(MotionFile, FramesDoNotComeBackOverAnotherCsvFile) {
   const test_support::ScratchFolder folder;
   const std::string path = folder.file("m.yaml"), csv = folder.file("m.csv");
-  const tools::MotionHistory history(path);
-  tools::write_motion(path, with_end(1, 2000));
+  const motion::MotionHistory history(path);
+  motion::write_motion(path, with_end(1, 2000));
   history.replace(with_end(2));
   write_text(csv, "measured\n");
   EXPECT_THROW(history.undo(), std::runtime_error);
@@ -136,10 +136,10 @@ TEST(MotionFile, KeepsASymbolicLinkAndThePermissions) {
   namespace fs = std::filesystem;
   const test_support::ScratchFolder folder;
   const std::string path = folder.file("m.yaml"), link = folder.file("link.yaml");
-  tools::write_motion(path, with_end(1));
+  motion::write_motion(path, with_end(1));
   fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write);
   fs::create_symlink(path, link);
-  tools::write_motion(link, with_end(2));
+  motion::write_motion(link, with_end(2));
   EXPECT_TRUE(fs::is_symlink(link));
   EXPECT_EQ(end_of(path), 2);
   EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_read | fs::perms::owner_write);
@@ -149,29 +149,29 @@ TEST(MotionFile, WhatIsNoFileIsNotReplaced) {
   const test_support::ScratchFolder folder;
   const std::string pipe = folder.file("pipe.yaml");
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  EXPECT_THROW(tools::write_motion(pipe, with_end(1)), std::runtime_error);
+  EXPECT_THROW(motion::write_motion(pipe, with_end(1)), std::runtime_error);
   EXPECT_TRUE(std::filesystem::is_fifo(pipe));
 }
 
 TEST(MotionFile, ThatCouldNotBeReadAgainIsNotWrittenAndLeavesNoVersion) {
   const test_support::ScratchFolder folder;
   const std::string path = folder.file("m.yaml");
-  const tools::MotionHistory history(path);
-  tools::write_motion(path, with_end(1));
-  EXPECT_THROW(history.replace(with_end(std::numeric_limits<double>::infinity())), tools::EditError);
+  const motion::MotionHistory history(path);
+  motion::write_motion(path, with_end(1));
+  EXPECT_THROW(history.replace(with_end(std::numeric_limits<double>::infinity())), motion::EditError);
   EXPECT_EQ(end_of(path), 1);
   EXPECT_THROW(history.undo(), std::runtime_error);
   // Nor is one of more than a day.
   sim::JointMotion days = with_end(2);
   days.keys.back().at_s = 1e6;
-  EXPECT_THROW(tools::write_motion(path, days), tools::EditError);
+  EXPECT_THROW(motion::write_motion(path, days), motion::EditError);
 }
 
 TEST(MotionFile, OtherFilesInTheHistoryAreIgnored) {
   const test_support::ScratchFolder folder;
   const std::string path = folder.file("m.yaml");
-  const tools::MotionHistory history(path);
-  tools::write_motion(path, with_end(1));
+  const motion::MotionHistory history(path);
+  motion::write_motion(path, with_end(1));
   std::filesystem::create_directories(path + ".history");
   write_text(path + ".history/abc.undo.yaml", "mine");
   history.replace(with_end(2));
@@ -181,8 +181,8 @@ TEST(MotionFile, OtherFilesInTheHistoryAreIgnored) {
 }
 
 TEST(MotionFile, ANameIsThatOfTheFile) {
-  EXPECT_EQ(tools::motion_name_of("folder/kick_right-2.yaml"), "kick_right-2");
-  EXPECT_EQ(tools::motion_name_of("my wave.yaml"), "my_wave");
+  EXPECT_EQ(motion::motion_name_of("folder/kick_right-2.yaml"), "kick_right-2");
+  EXPECT_EQ(motion::motion_name_of("my wave.yaml"), "my_wave");
 }
 
 }  // namespace

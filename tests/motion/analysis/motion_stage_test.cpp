@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 struct Theatre {
   test_support::ScratchFolder folder;
-  tools::StageOptions options;
+  motion::StageOptions options;
 
   Theatre() {
     options.world = folder.file("world.yaml");
@@ -41,7 +41,7 @@ sim::JointMotion swing(double height, double end_s = 3) {
 
 TEST(MotionStage, FromAnyInstantTheEndIsThatOfTheFullPlay) {
   const Theatre theatre;
-  tools::MotionStage stage(theatre.options, swing(1));
+  motion::MotionStage stage(theatre.options, swing(1));
   stage.play_out(0.5, 60);
   const double end_s = stage.now_s();
   const std::uint64_t hash = stage.state_hash();
@@ -59,16 +59,16 @@ TEST(MotionStage, FromAnyInstantTheEndIsThatOfTheFullPlay) {
 TEST(MotionStage, SaysWhetherTheMotionHasEnded) {
   const Theatre theatre;
   const sim::JointMotion motion = swing(1);
-  tools::MotionStage stage(theatre.options, motion);
+  motion::MotionStage stage(theatre.options, motion);
   EXPECT_FALSE(stage.play_out(0, 2));
   EXPECT_NEAR(stage.now_s(), 2, 1e-9);
-  EXPECT_TRUE(stage.play_out(0, tools::end_limit_s(motion)));
-  EXPECT_GT(tools::end_limit_s(motion), stage.now_s());
+  EXPECT_TRUE(stage.play_out(0, motion::end_limit_s(motion)));
+  EXPECT_GT(motion::end_limit_s(motion), stage.now_s());
 }
 
 TEST(MotionStage, KnowsWhenATimeOfTheMotionIsReached) {
   const Theatre theatre;
-  tools::MotionStage stage(theatre.options, swing(1));
+  motion::MotionStage stage(theatre.options, swing(1));
   stage.go_to(1.5);
   const double at_s = stage.time_of(0.8);
   stage.go_to(at_s);
@@ -79,7 +79,7 @@ TEST(MotionStage, KnowsWhenATimeOfTheMotionIsReached) {
 
 TEST(MotionStage, AChangeActsFromItsInstantOnAndTheOldFutureIsABranch) {
   const Theatre theatre;
-  tools::MotionStage stage(theatre.options, swing(1));
+  motion::MotionStage stage(theatre.options, swing(1));
   stage.play_out(0.5, 60);
   const double end_s = stage.now_s();
   const std::uint64_t first = stage.state_hash();
@@ -102,7 +102,7 @@ TEST(MotionStage, AChangeActsFromItsInstantOnAndTheOldFutureIsABranch) {
 
 TEST(MotionStage, AnActionOfTheWorldIsPartOfTheBranch) {
   const Theatre theatre;
-  tools::MotionStage stage(theatre.options, swing(1));
+  motion::MotionStage stage(theatre.options, swing(1));
   stage.go_to(2);
   sim::Diagnostics diagnostics;
   stage.run_action(
@@ -120,7 +120,7 @@ TEST(MotionStage, CarriesOutTheChangesOfAMotionAtTheirTimes) {
   sim::Diagnostics diagnostics;
   motion.changes.push_back(
       {1.5, sim::parse_config_text("{set: {device: dog/hip, values: {max_effort: 0.01}}}", "action", diagnostics)});
-  tools::MotionStage plain(theatre.options, swing(1)), changed(theatre.options, motion);
+  motion::MotionStage plain(theatre.options, swing(1)), changed(theatre.options, motion);
   plain.play_out(0.5, 60);
   changed.play_out(0.5, 60);
   const double end_s = changed.now_s();
@@ -139,7 +139,7 @@ TEST(MotionStage, CarriesOutTheChangesOfAMotionAtTheirTimes) {
 
 TEST(MotionStage, AnActionThatCannotBeCarriedOutLeavesTheWorldAsItWas) {
   const Theatre theatre;
-  tools::MotionStage stage(theatre.options, swing(1)), plain(theatre.options, swing(1));
+  motion::MotionStage stage(theatre.options, swing(1)), plain(theatre.options, swing(1));
   stage.go_to(2);
   plain.go_to(2);
   sim::Diagnostics diagnostics;
@@ -160,7 +160,7 @@ TEST(MotionStage, AnActionThatCannotBeCarriedOutLeavesTheWorldAsItWas) {
 
 TEST(MotionStage, AChangeInTheLastStepIsThereAgain) {
   const Theatre theatre;
-  tools::MotionStage stage(theatre.options, swing(1));
+  motion::MotionStage stage(theatre.options, swing(1));
   stage.go_to(2);
   sim::Diagnostics diagnostics;
   stage.run_action(sim::parse_config_text("{gravity_mps2: 5}", "action", diagnostics));
@@ -176,24 +176,24 @@ TEST(MotionStage, PlaysAPartAgainAndAgain) {
   theatre.options.play.from_s = 0.5;
   theatre.options.play.to_s = 1.5;
   theatre.options.play.repeat = -1;
-  tools::MotionStage stage(theatre.options, swing(1));
+  motion::MotionStage stage(theatre.options, swing(1));
   stage.go_to(0.1);  // the approach is planned
   const double start_s = stage.time_of(0.5);
   stage.go_to(start_s + 2.25);
   EXPECT_NEAR(stage.player().at_s(), 0.75, 1e-9);
   theatre.options.play.to_s = 4;
-  EXPECT_THROW(tools::MotionStage(theatre.options, swing(1)), std::runtime_error);
+  EXPECT_THROW(motion::MotionStage(theatre.options, swing(1)), std::runtime_error);
 }
 
 TEST(MotionStage, MarginsAndScoresGoBackWithIt) {
-  tools::StageOptions options;
+  motion::StageOptions options;
   options.world = test_support::source_path("worlds/ers7_studio.yaml");
   options.scores = true;
   sim::JointMotion bow;
   bow.name = "bow";
   bow.keys = {{0, "", {{"lf_swing", 0}, {"rf_swing", 0}}, {}, "", {}},
               {1, "", {{"lf_swing", -0.5}, {"rf_swing", -0.5}}, {}, "", {}}};
-  tools::MotionStage stage(options, bow);
+  motion::MotionStage stage(options, bow);
   const auto figures = [&] {
     std::string text;
     for (const auto& [name, value] : stage.scoring()->figures()) text += fmt::format("{} {}\n", name, value);
@@ -217,9 +217,9 @@ TEST(MotionStage, MarginsAndScoresGoBackWithIt) {
 
 TEST(MotionStage, TracksSetPointsAndTilt) {
   const Theatre theatre;
-  tools::MotionStage stage(theatre.options, swing(0.5));
-  tools::MotionTracking tracking;
-  stage.after_step = [&](tools::MotionStage& now) { tracking.add(now); };
+  motion::MotionStage stage(theatre.options, swing(0.5));
+  motion::MotionTracking tracking;
+  stage.after_step = [&](motion::MotionStage& now) { tracking.add(now); };
   stage.play_out(0.5, 60);
   EXPECT_LT(tracking.greatest_error_rad(), 0.02);
   EXPECT_NEAR(tracking.greatest_tilt_rad(), 0.5, 0.02);  // the thigh is the first body
@@ -230,7 +230,7 @@ TEST(MotionStage, SaysWhichWorldHasNoPlayer) {
   const Theatre theatre;
   std::ofstream(theatre.options.world) << test::leg_world("");
   try {
-    tools::MotionStage stage(theatre.options, swing(1));
+    motion::MotionStage stage(theatre.options, swing(1));
     FAIL();
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), HasSubstr("has a motion_player"));
@@ -242,7 +242,7 @@ TEST(MotionStage, RefusesAJointThatTheVehicleDoesNotHave) {
   sim::JointMotion motion = swing(1);
   motion.keys[0].joints.emplace_back("tail", 1);
   try {
-    tools::MotionStage stage(theatre.options, motion);
+    motion::MotionStage stage(theatre.options, motion);
     FAIL();
   } catch (const sim::ConfigError& error) {
     EXPECT_THAT(error.what(), HasSubstr("names joint 'tail', which is not a servo of the group"));

@@ -16,7 +16,7 @@ namespace {
 /// above ground, with an arm without weight that a player moves.
 struct Block {
   test_support::ScratchFolder folder;
-  tools::StageOptions options;
+  motion::StageOptions options;
 
   Block() {
     options.world = folder.file("world.yaml");
@@ -70,13 +70,13 @@ double tipping_mps(double r) {
 
 TEST(PushTest, ABlockTipsAtTheImpulseOfItsEnergy) {
   const Block block;
-  tools::MotionStage stage(block.options, turn());
-  tools::PushOptions options;
+  motion::MotionStage stage(block.options, turn());
+  motion::PushOptions options;
   options.directions = 4;
   options.push_s = 0.002;
   options.greatest_mps = 2;
   options.watch_s = 3;
-  const auto margins = tools::push_margins(stage, {1.0}, options);
+  const auto margins = motion::push_margins(stage, {1.0}, options);
   ASSERT_EQ(margins.size(), 1u);
   EXPECT_NEAR(margins[0].mass_kg, 2.041, 1e-4);
   // It tilts 45 degrees only beyond the top of its arc: tipping and falling are the same.  5 %: the soft ground gives
@@ -91,14 +91,14 @@ TEST(PushTest, ABlockTipsAtTheImpulseOfItsEnergy) {
 
 TEST(PushTest, TheWeakestPushIsTheLeastMarginWithFewerPushes) {
   const Block block;
-  tools::PushOptions options;
+  motion::PushOptions options;
   options.watch_s = 3;
   std::vector<double> weakest_mps;
   const std::vector<double> instants_s{0.5, 1.0, 1.5};
   for (const int threads : {1, 2}) {
     options.threads = threads;
-    tools::MotionStage stage(block.options, turn());
-    const tools::WeakestPush weakest = tools::weakest_push(stage, instants_s, options);
+    motion::MotionStage stage(block.options, turn());
+    const motion::WeakestPush weakest = motion::weakest_push(stage, instants_s, options);
     EXPECT_FALSE(weakest.falls);
     EXPECT_FALSE(weakest.is_beyond);
     EXPECT_NEAR(weakest.mass_kg, 2.041, 1e-4);
@@ -107,9 +107,9 @@ TEST(PushTest, TheWeakestPushIsTheLeastMarginWithFewerPushes) {
     weakest_mps.push_back(weakest.withstood_mps);
   }
   EXPECT_EQ(weakest_mps[0], weakest_mps[1]);
-  tools::MotionStage stage(block.options, turn());
+  motion::MotionStage stage(block.options, turn());
   double least_Ns = 1e9;
-  for (const tools::PushMargin& margin : tools::push_margins(stage, instants_s, options))
+  for (const motion::PushMargin& margin : motion::push_margins(stage, instants_s, options))
     least_Ns = std::min(least_Ns, margin.least_Ns());
   // Both are found to 1/64 m/s, between other pushes.
   EXPECT_NEAR(weakest_mps[0], least_Ns / 2.041, 2.0 / 64);
@@ -117,23 +117,23 @@ TEST(PushTest, TheWeakestPushIsTheLeastMarginWithFewerPushes) {
 
 TEST(PushTest, TheWeakestPushKnowsWhatIsBeyondItsRange) {
   const Block block;
-  tools::PushOptions options;
+  motion::PushOptions options;
   options.watch_s = 0.5;
   options.greatest_mps = 0.25;  // it tips at 1.1 m/s
-  tools::MotionStage stage(block.options, turn());
-  const tools::WeakestPush weakest = tools::weakest_push(stage, {0.5}, options);
+  motion::MotionStage stage(block.options, turn());
+  const motion::WeakestPush weakest = motion::weakest_push(stage, {0.5}, options);
   EXPECT_TRUE(weakest.is_beyond);
   EXPECT_EQ(weakest.withstood_mps, 0.25);
 }
 
 TEST(PushTest, HasTheChangesOfTheMotionThatComeAfterThePush) {
   const Block block;
-  tools::MotionStage stage(block.options, turn());
+  motion::MotionStage stage(block.options, turn());
   stage.go_to(1.02);
   sim::Diagnostics diagnostics;
   stage.run_action(sim::parse_config_text("{gravity_mps2: 1}", "action", diagnostics));
   stage.go_to(2);
-  tools::PushOptions options;
+  motion::PushOptions options;
   options.directions = 1;
   options.push_s = 0.002;
   options.greatest_mps = 2;
@@ -141,31 +141,31 @@ TEST(PushTest, HasTheChangesOfTheMotionThatComeAfterThePush) {
   // From 20 ms on the energy to tip it is a tenth of before, and so the impulse a third; until then the weight of
   // before takes g t of an impulse at the edge, 0.15 m beside it, and so half of that 0.3 m above it.
   const double expected = tipping_mps(0.15) * std::sqrt(1 / 9.80665) + 9.80665 * 0.02 * 0.15 / 0.3;
-  EXPECT_NEAR(tools::push_margins(stage, {1.0}, options)[0].withstood_mps[0], expected, 0.1 * expected);
+  EXPECT_NEAR(motion::push_margins(stage, {1.0}, options)[0].withstood_mps[0], expected, 0.1 * expected);
 }
 
 TEST(PushTest, SettlesWhereItWouldBeWithoutAPush) {
   const Block block;
-  tools::MotionStage stage(block.options, turn());
-  tools::PushOptions options;
+  motion::MotionStage stage(block.options, turn());
+  motion::PushOptions options;
   options.directions = 1;
   options.watch_s = 0.5;
   options.settle_mps = 0;
   // The motion moves the block, but no push does.
-  EXPECT_EQ(tools::push_margins(stage, {1.0}, options)[0].settle_m, 0);
+  EXPECT_EQ(motion::push_margins(stage, {1.0}, options)[0].settle_m, 0);
 }
 
 TEST(PushTest, IsTheSameForAnyNumberOfThreadsAndLeavesTheWorldAlone) {
   const Block block;
-  tools::PushOptions options;
+  motion::PushOptions options;
   options.directions = 3;
   options.watch_s = 0.5;
   std::vector<std::vector<double>> results;
   std::uint64_t hash = 0;
   for (const int threads : {1, 2}) {
-    tools::MotionStage stage(block.options, turn());
+    motion::MotionStage stage(block.options, turn());
     options.threads = threads;
-    for (const auto& margin : tools::push_margins(stage, {0.5, 1.5}, options)) {
+    for (const auto& margin : motion::push_margins(stage, {0.5, 1.5}, options)) {
       results.push_back(margin.withstood_mps);
       results.back().push_back(margin.settle_m);
     }
@@ -175,7 +175,7 @@ TEST(PushTest, IsTheSameForAnyNumberOfThreadsAndLeavesTheWorldAlone) {
   }
   EXPECT_EQ(results[0], results[2]);
   EXPECT_EQ(results[1], results[3]);
-  tools::MotionStage without_pushes(block.options, turn());
+  motion::MotionStage without_pushes(block.options, turn());
   without_pushes.go_to(2.5);
   EXPECT_EQ(without_pushes.state_hash(), hash);
 }

@@ -10,7 +10,7 @@
 namespace test {
 
 /// A leg of two servos, of which the knee has an alias, and what other programs call them.
-inline tools::JointNames leg_names() {
+inline motion::JointNames leg_names() {
   return {"leg",
           {{"lf_swing", "PRM:/r2/c1-Joint2:21", 0, false},
            {"lf_knee", "PRM:/r2/c1/c2/c3-Joint2:23", 0.5, false},
@@ -42,24 +42,24 @@ inline sim::JointMotion motion(std::vector<KeyOf> keys) {
 
 struct Written {
   std::string bytes;
-  tools::Losses losses;
+  motion::Losses losses;
 };
-inline Written written(const char* format, const sim::JointMotion& motion, const tools::JointNames& names = {},
-                       const tools::FormatOptions& options = {}) {
+inline Written written(const char* format, const sim::JointMotion& motion, const motion::JointNames& names = {},
+                       const motion::FormatOptions& options = {}) {
   Written result;
-  result.bytes = tools::bytes_of_motion(*tools::find_motion_format(format), motion, names, options, result.losses);
+  result.bytes = motion::bytes_of_motion(*motion::find_motion_format(format), motion, names, options, result.losses);
   return result;
 }
 
 struct Read {
   sim::JointMotion motion;
-  tools::Losses losses;
+  motion::Losses losses;
 };
-inline Read read(const char* format, const std::string& bytes, const tools::JointNames& names = {},
-                 const tools::FormatOptions& options = {}) {
+inline Read read(const char* format, const std::string& bytes, const motion::JointNames& names = {},
+                 const motion::FormatOptions& options = {}) {
   Read result;
   result.motion =
-      tools::motion_of_bytes(*tools::find_motion_format(format), {bytes, "file", names, options, {}}, result.losses);
+      motion::motion_of_bytes(*motion::find_motion_format(format), {bytes, "file", names, options, {}}, result.losses);
   return result;
 }
 
@@ -73,7 +73,7 @@ std::string error_of(const Work& work) {
   }
   return "";
 }
-inline std::string read_error(const char* format, const std::string& bytes, const tools::JointNames& names = {}) {
+inline std::string read_error(const char* format, const std::string& bytes, const motion::JointNames& names = {}) {
   return error_of([&] { read(format, bytes, names); });
 }
 

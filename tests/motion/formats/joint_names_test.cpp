@@ -14,8 +14,8 @@ namespace {
 using testing::HasSubstr;
 
 TEST(JointNames, OfTheErs7AreThoseOfSonyAndTekkotsu) {
-  const tools::JointNamesFile file =
-      tools::load_joint_names(test_support::source_path("vehicles/joint_names/ers7.yaml"));
+  const motion::JointNamesFile file =
+      motion::load_joint_names(test_support::source_path("vehicles/joint_names/ers7.yaml"));
   EXPECT_EQ(file.vehicle, "ers7");
   ASSERT_EQ(file.lists.size(), 2u);
   EXPECT_EQ(file.lists[0].names.size(), 20u);
@@ -25,15 +25,15 @@ TEST(JointNames, OfTheErs7AreThoseOfSonyAndTekkotsu) {
 }
 
 TEST(JointNames, OfTheBittleAreNumbersOfOpencat) {
-  const tools::JointNamesFile file =
-      tools::load_joint_names(test_support::source_path("vehicles/joint_names/bittle.yaml"));
+  const motion::JointNamesFile file =
+      motion::load_joint_names(test_support::source_path("vehicles/joint_names/bittle.yaml"));
   ASSERT_EQ(file.lists.size(), 1u);
   EXPECT_EQ(file.lists[0].list, "opencat");
   EXPECT_EQ(file.lists[0].names.size(), 9u);
 }
 
 TEST(JointNames, AreThoseOfTheListElseOfTheAliasElseOfTheServo) {
-  const tools::JointNames names = test::leg_names();
+  const motion::JointNames names = test::leg_names();
   EXPECT_EQ(names.foreign_name("tekkotsu", false, "lf_knee"), "LFr:knee");
   EXPECT_EQ(names.foreign_name("tekkotsu", false, "PRM:/r2/c1/c2/c3-Joint2:23"), "LFr:knee")
       << "a motion may use the alias";
@@ -50,18 +50,18 @@ TEST(JointNames, SayWhatIsWrongInTheirFile) {
   const std::string path = folder.file("names.yaml");
   std::ofstream(path)
       << "shoal: 1\njoint_names: dog\nlists:\n  - list: a\n    joints: {x: one, y: one, z: [1]}\n    order: 1\n";
-  const std::string error = test::error_of([&] { tools::load_joint_names(path); });
+  const std::string error = test::error_of([&] { motion::load_joint_names(path); });
   EXPECT_THAT(error, HasSubstr(path + ":5:25: list 1: 'y' must be a name that no other joint has, got 'one'"));
   EXPECT_THAT(error, HasSubstr("'z' must be a name that no other joint has, got [1]"));
   EXPECT_THAT(error, HasSubstr("unknown key 'order'"));
 }
 
 TEST(MotionFormats, AreFoundByTheirFirstBytesElseByTheEnding) {
-  EXPECT_STREQ(tools::motion_format_of_file("x", "OMTN....")->name, "mtn");
-  EXPECT_STREQ(tools::motion_format_of_file("x.csv", "#MSq\n")->name, "mot");
-  EXPECT_STREQ(tools::motion_format_of_file("x.motion", "")->name, "webots");
-  EXPECT_EQ(tools::motion_format_of_file("x.yaml", "joint_names:"), nullptr);
-  EXPECT_EQ(tools::find_motion_format("bvh"), nullptr);
+  EXPECT_STREQ(motion::motion_format_of_file("x", "OMTN....")->name, "mtn");
+  EXPECT_STREQ(motion::motion_format_of_file("x.csv", "#MSq\n")->name, "mot");
+  EXPECT_STREQ(motion::motion_format_of_file("x.motion", "")->name, "webots");
+  EXPECT_EQ(motion::motion_format_of_file("x.yaml", "joint_names:"), nullptr);
+  EXPECT_EQ(motion::find_motion_format("bvh"), nullptr);
 }
 
 TEST(MotionFormats, ListWhatTheyNeverKeep) {

@@ -14,13 +14,13 @@ using testing::HasSubstr;
 const std::string rule = "the name of a joint must be UTF-8 text of 1 to 255 bytes without control characters, got ";
 
 std::string mtn_with(const std::string& name, const std::string& creator = "me") {
-  tools::MtnFile file;
+  motion::MtnFile file;
   file.name = "wave";
   file.creator = creator;
   file.locators = {"neck", name};
   file.keys.resize(1);
   file.keys[0].joints = {0, 0};
-  return tools::mtn_bytes(file);
+  return motion::mtn_bytes(file);
 }
 
 TEST(NamesInOtherFormats, AreTextInUtf8AndTheErrorHasThePlaceAndTheValue) {

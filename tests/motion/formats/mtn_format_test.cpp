@@ -77,7 +77,7 @@ std::string example() {
 TEST(MtnFile, OfTheStructureOfTheWorkedExampleIsReadToItsLastByteAndWrittenTheSame) {
   const std::string bytes = example();
   ASSERT_EQ(bytes.size(), 1164u);
-  const tools::MtnFile file = tools::parse_mtn(bytes, "file");
+  const motion::MtnFile file = motion::parse_mtn(bytes, "file");
   EXPECT_EQ(file.name, "b_stand#lie_S");
   EXPECT_EQ(file.creator, "Makers of Shoal.");
   EXPECT_EQ(file.design, "XYZ-910");
@@ -85,7 +85,7 @@ TEST(MtnFile, OfTheStructureOfTheWorkedExampleIsReadToItsLastByteAndWrittenTheSa
   ASSERT_EQ(file.keys.size(), 6u);
   EXPECT_EQ(file.keys[0].pitch, 34906);
   EXPECT_EQ(file.keys[5].between, 100);
-  EXPECT_EQ(tools::mtn_bytes(file), bytes);
+  EXPECT_EQ(motion::mtn_bytes(file), bytes);
 }
 
 TEST(MtnFormat, ReadsAndWritesTheSameBytesByWayOfAMotion) {
@@ -96,7 +96,7 @@ TEST(MtnFormat, ReadsAndWritesTheSameBytesByWayOfAMotion) {
   EXPECT_EQ(read.motion.name, "b_stand_lie_S");
   EXPECT_EQ(read.motion.keys[0].note, "body roll 0 pitch 34906 yaw 0 (1e-6 rad)");
   EXPECT_THAT(read.losses, ElementsAre("the name 'b_stand#lie_S' becomes 'b_stand_lie_S'"));
-  tools::FormatOptions options;
+  motion::FormatOptions options;
   options.name = "b_stand#lie_S";
   options.creator = "Makers of Shoal.";
   options.design = "XYZ-910";
@@ -106,7 +106,7 @@ TEST(MtnFormat, ReadsAndWritesTheSameBytesByWayOfAMotion) {
 TEST(MtnFormat, CountsTheFramesBetweenKeysAndRoundsToMicroradians) {
   const test::Written file =
       test::written("mtn", test::motion({{0, {{"a", 0.1234567}}}, {0.016, {{"a", -1}}}, {0.176, {{"a", 1}}}}));
-  const tools::MtnFile read = tools::parse_mtn(file.bytes, "file");
+  const motion::MtnFile read = motion::parse_mtn(file.bytes, "file");
   ASSERT_EQ(read.keys.size(), 3u);
   EXPECT_EQ(read.keys[0].joints[0], 123457);
   EXPECT_EQ(read.keys[1].between, 0);
@@ -125,10 +125,10 @@ TEST(MtnFormat, ListsHowFarTimesBetweenFramesMoveTheMotion) {
 }
 
 TEST(MtnFormat, WritesAllJointsOfACompleteListInItsOrder) {
-  const tools::JointNames names("leg", {{"knee", "", 0.5, false}, {"hip", "", 0, false}, {"ear", "", 0, false}},
-                                {{"open-r", "DRX-1000", true, {{"hip", "PRM:1"}, {"knee", "PRM:2"}}}});
+  const motion::JointNames names("leg", {{"knee", "", 0.5, false}, {"hip", "", 0, false}, {"ear", "", 0, false}},
+                                 {{"open-r", "DRX-1000", true, {{"hip", "PRM:1"}, {"knee", "PRM:2"}}}});
   const test::Written file = test::written("mtn", test::motion({{0, {{"ear", 1}, {"hip", 0.25}}}}), names);
-  const tools::MtnFile read = tools::parse_mtn(file.bytes, "file");
+  const motion::MtnFile read = motion::parse_mtn(file.bytes, "file");
   EXPECT_EQ(read.design, "DRX-1000");
   EXPECT_THAT(read.locators, ElementsAre("PRM:1", "PRM:2"));
   EXPECT_THAT(read.keys[0].joints, ElementsAre(250000, 500000));
@@ -145,7 +145,7 @@ TEST(MtnFormat, RefusesWhatItCannotHold) {
               test::written("mtn", test::motion({{0, {{"a", 3000}}}}));
             }),
             "motion 'wave': joint 'a' at 0 s: must be from -2147 to 2147, got 3000");
-  tools::FormatOptions options;
+  motion::FormatOptions options;
   options.name = std::string(128, 'x');
   EXPECT_THAT(test::error_of([&] {
                 test::written("mtn", test::motion({{0, {{"a", 0}}}}), {}, options);

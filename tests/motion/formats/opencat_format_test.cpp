@@ -57,16 +57,16 @@ TEST(OpencatFormat, HalvesAnglesAbove127Degrees) {
 }
 
 TEST(OpencatFormat, RepeatsTheLoopOfABehavior) {
-  tools::SkillArray skill;
+  motion::SkillArray skill;
   skill.name = "hi";
   skill.period = -3;
   skill.loop_first = 1, skill.loop_last = 2, skill.loop_count = 2;
   for (const int angle : {0, 10, 20}) {
-    tools::SkillRow& row = skill.rows.emplace_back();
+    motion::SkillRow& row = skill.rows.emplace_back();
     row.angles_deg[8] = angle;
     row.speed = 4;
   }
-  const test::Read file = test::read("opencat", tools::skill_text(skill));
+  const test::Read file = test::read("opencat", motion::skill_text(skill));
   // Rows 0 1 2 1 2 at 1 degree a step of 20 ms: four ways of 10 degrees.
   EXPECT_DOUBLE_EQ(file.motion.end_s(), 0.8);
   EXPECT_NEAR(test::value(file.motion, "joint_8", 0.6), 10 * degree, 1e-12);
@@ -80,7 +80,7 @@ TEST(OpencatFormat, ChoosesOneOfTheSkillsOfAFile) {
       "{1,0,0,1,0,0,0,0,0,0,0,0,30,30,30,30,30,30,30,30};\n"
       "const char* skillNameWithType[] = {\"sitI\", \"upN\"};\nconst char* const* progmemPointer[] = {sit, up};\n";
   EXPECT_EQ(test::read_error("opencat", text), "file: has several skills: choose one (--name) of sit, up");
-  tools::FormatOptions options;
+  motion::FormatOptions options;
   options.name = "up";
   EXPECT_NEAR(test::value(test::read("opencat", text, {}, options).motion, "joint_15", 0), 30 * degree, 1e-12);
   options.name = "sit";

@@ -33,9 +33,9 @@ struct EndOfMotion {
 
 EndOfMotion end_of(const sim::JointMotion& motion, double duration_s) {
   static const sim::WorldConfig studio =
-      tools::world_for_walks(sim::load_world(test_support::source_path("worlds/ers7_studio.yaml")).config);
+      motion::world_for_walks(sim::load_world(test_support::source_path("worlds/ers7_studio.yaml")).config);
   sim::WorldConfig config = studio;
-  tools::set_played_motion(config, "dog", motion);
+  motion::set_played_motion(config, "dog", motion);
   sim::InProcessBus bus;
   sim::World world(config, bus);
   while (sim::to_seconds(world.now()) < duration_s - 1e-9) world.step();

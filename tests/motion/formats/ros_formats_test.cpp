@@ -117,7 +117,7 @@ TEST(PlayMotion2Format, ChoosesOneOfSeveralMotions) {
       "node:\n  ros__parameters:\n    motions:\n      home: {joints: [a], positions: [1.0], times_from_start: [0.5]}\n"
       "      wave: {joints: [a], positions: [2.0, 3.0], times_from_start: [0.5, 1.0]}\n";
   EXPECT_EQ(test::read_error("play_motion2", text), "file:4:7: has several motions: choose one (--name) of home, wave");
-  tools::FormatOptions options;
+  motion::FormatOptions options;
   options.name = "wave";
   EXPECT_DOUBLE_EQ(test::value(test::read("play_motion2", text, {}, options).motion, "a", 0), 2);
   options.name = "wav";

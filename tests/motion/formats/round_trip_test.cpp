@@ -78,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(, RoundTrip, testing::Values("csv", "ros", "play_motion
 TEST(RoundTripOfPostures, KeepsThePoseWithinAMicroradian) {
   EXPECT_TRUE(rc::check([] {
     const sim::JointMotion motion = random_motion(8, false, 3);
-    tools::FormatOptions options;
+    motion::FormatOptions options;
     options.at_s = motion.end_s() * 0.5;
     const sim::JointMotion again = test::read("pos", test::written("pos", motion, {}, options).bytes).motion;
     for (const sim::MotionTrack& track : motion.tracks())

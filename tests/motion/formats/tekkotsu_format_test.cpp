@@ -63,11 +63,11 @@ TEST(MotFormat, LoadsPosturesAndMotionsOfItsFolder) {
     if (!files.contains(name)) throw std::runtime_error("does not exist");
     return files.at(name);
   };
-  tools::Losses losses;
-  const tools::JointNames names = test::leg_names();
-  const tools::FormatOptions options;
+  motion::Losses losses;
+  const motion::JointNames names = test::leg_names();
+  const motion::FormatOptions options;
   const auto read = [&](const std::string& bytes) {
-    return tools::motion_of_bytes(*tools::find_motion_format("mot"), {bytes, "file", names, options, load}, losses);
+    return motion::motion_of_bytes(*motion::find_motion_format("mot"), {bytes, "file", names, options, load}, losses);
   };
   const sim::JointMotion motion = read("#MSq\nsetTime 200\nload stand.pos\nload kick.mot\nLFr:rotor 1\n#END\n");
   EXPECT_DOUBLE_EQ(test::value(motion, "lf_knee", 0), 0.5);
@@ -105,7 +105,7 @@ TEST(PosFormat, HoldsOneInstant) {
   const sim::JointMotion motion = test::motion({{0, {{"lf_swing", 0}}}, {1, {{"lf_swing", 1}}}});
   EXPECT_EQ(test::error_of([&] { test::written("pos", motion, test::leg_names()); }),
             "motion 'wave': a posture holds one instant of 1 s: choose it (--at)");
-  tools::FormatOptions options;
+  motion::FormatOptions options;
   options.at_s = 0.25;
   const test::Written file = test::written("pos", motion, test::leg_names(), options);
   EXPECT_EQ(file.bytes, "#POS\nLFr:rotor\t0.250000\t1\n#END\n");

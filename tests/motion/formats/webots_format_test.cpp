@@ -28,7 +28,7 @@ TEST(WebotsFormat, WritesAllJointsInEachPose) {
 TEST(WebotsFormat, EndsALoopOneControlStepEarlySinceThePlayerAddsOne) {
   sim::JointMotion motion = test::motion({{0, {{"a", 0}}}, {0.064, {{"a", 0.64}}}, {0.128, {{"a", 0}}}});
   motion.loop = true;
-  tools::FormatOptions options;
+  motion::FormatOptions options;
   options.loop_step_s = 0.032;
   // The loop of 128 ms has poses at 0, 32, 64 and 96 ms; the fifth step of 32 ms is the first one again.
   EXPECT_EQ(test::written("webots", motion, {}, options).bytes,
@@ -42,7 +42,7 @@ TEST(WebotsFormat, EndsALoopOneControlStepEarlySinceThePlayerAddsOne) {
 TEST(WebotsFormat, RefusesALoopThatIsNotWholeControlSteps) {
   sim::JointMotion motion = test::motion({{0, {{"a", 0}}}, {0.1, {{"a", 0}}}});
   motion.loop = true;
-  tools::FormatOptions options;
+  motion::FormatOptions options;
   options.loop_step_s = 0.032;
   EXPECT_EQ(test::error_of([&] { test::written("webots", motion, {}, options); }),
             "motion 'wave': a loop must last two or more whole control steps of 32 ms (--loop-step-ms), got 0.1 s");
@@ -51,7 +51,7 @@ TEST(WebotsFormat, RefusesALoopThatIsNotWholeControlSteps) {
 TEST(WebotsFormat, ListsTheSeamOfALoopThatDoesNotClose) {
   sim::JointMotion motion = test::motion({{0, {{"a", 0}}}, {0.128, {{"a", 0.25}}}});
   motion.loop = true;
-  tools::FormatOptions options;
+  motion::FormatOptions options;
   options.loop_step_s = 0.032;
   EXPECT_THAT(test::written("webots", motion, {}, options).losses,
               ElementsAre(HasSubstr("up to 0.25 rad from the first one")));

@@ -11,7 +11,7 @@
 
 namespace {
 
-using tools::Cpg;
+using motion::Cpg;
 
 sim::VehicleConfig oscillating_dog() {
   return sim::load_vehicle(test_support::source_path("vehicles/ers7.yaml"));
@@ -19,7 +19,7 @@ sim::VehicleConfig oscillating_dog() {
 
 std::vector<double> start_of(const Cpg& gait) {
   std::vector<double> values;
-  for (const tools::GaitNumber& number : gait.numbers()) values.push_back(number.start);
+  for (const motion::GaitNumber& number : gait.numbers()) values.push_back(number.start);
   return values;
 }
 
@@ -27,7 +27,7 @@ TEST(Cpg, LegsSwingForwardInTheAirAndBackOnTheGround) {
   const Cpg gait(oscillating_dog());
   const std::vector<double> values = start_of(gait);
   ASSERT_EQ(values.size(), 8u);
-  for (const tools::Leg& leg : gait.legs()) {
+  for (const motion::Leg& leg : gait.legs()) {
     const auto foot = [&](double phase) { return leg.foot_at(Cpg::posture_at(values, leg, phase)); };
     // The hip turns the leg forward about phase 0, with the knee bent by its amplitude, and back about phase 0.5.
     const auto hip = [&](double phase) { return Cpg::posture_at(values, leg, phase).swing; };
@@ -61,7 +61,7 @@ TEST(Cpg, ServosAreWithinTheirRangesAndSpeedsInAllCornersOfTheSearch) {
     std::vector<double> values;
     for (std::size_t i = 0; i < 8; ++i)
       values.push_back((bits >> i & 1) != 0 ? gait.numbers()[i].high : gait.numbers()[i].low);
-    const auto findings = tools::check_motion(gait.motion(values), vehicle);
+    const auto findings = motion::check_motion(gait.motion(values), vehicle);
     EXPECT_TRUE(findings.empty()) << bits << ": " << findings.front().text();
   }
 }

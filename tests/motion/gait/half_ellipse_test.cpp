@@ -12,7 +12,7 @@
 
 namespace {
 
-using tools::HalfEllipse;
+using motion::HalfEllipse;
 
 sim::VehicleConfig ers7() {
   return sim::load_vehicle(test_support::source_path("vehicles/ers7.yaml"));
@@ -20,7 +20,7 @@ sim::VehicleConfig ers7() {
 
 std::vector<double> start_of(const HalfEllipse& gait) {
   std::vector<double> values;
-  for (const tools::GaitNumber& number : gait.numbers()) values.push_back(number.start);
+  for (const motion::GaitNumber& number : gait.numbers()) values.push_back(number.start);
   return values;
 }
 
@@ -33,7 +33,7 @@ std::vector<double> corner_of(const HalfEllipse& gait, unsigned bits) {
 }
 
 TEST(Leg, TheLengthsOfTheErs7AreThoseOfItsFile) {
-  const std::vector<tools::Leg> legs = tools::legs_of(ers7());
+  const std::vector<motion::Leg> legs = motion::legs_of(ers7());
   ASSERT_EQ(legs.size(), 4u);
   EXPECT_EQ(legs[0].name, "lf");
   EXPECT_TRUE(legs[0].hip.isApprox(sim::Vector3d(0.065, 0.0625, 0)));
@@ -47,7 +47,7 @@ TEST(Leg, TheLengthsOfTheErs7AreThoseOfItsFile) {
 }
 
 TEST(Leg, JointsTurnAsTheirAxesSay) {
-  const std::vector<tools::Leg> legs = tools::legs_of(ers7());
+  const std::vector<motion::Leg> legs = motion::legs_of(ers7());
   // Positive: front forward, rear backward, flap outwards (docs/models/ers7.md).
   EXPECT_GT(legs[0].foot_at({0.5, 0, 0}).x(), legs[0].foot.x());
   EXPECT_GT(legs[0].foot_at({0, 0, 0.5}).x(), legs[0].foot.x());
@@ -59,11 +59,11 @@ TEST(Leg, JointsTurnAsTheirAxesSay) {
 
 TEST(Leg, APostureThatWasForwardIsFoundBackward) {
   // The rear leg is straight at 0.33, and its knee turned in the positive direction above.
-  for (const tools::Leg& leg : tools::legs_of(ers7()))
+  for (const motion::Leg& leg : motion::legs_of(ers7()))
     for (const double swing : {-1.0, -0.2, 0.4, 1.1})
       for (const double flap : {-0.1, 0.0, 0.4, 1.0})
         for (const double knee : {0.5, 0.9, 1.7}) {
-          const tools::LegPosture found = leg.posture_at(leg.foot_at({swing, flap, knee}));
+          const motion::LegPosture found = leg.posture_at(leg.foot_at({swing, flap, knee}));
           EXPECT_TRUE(found.reached);
           EXPECT_NEAR(found.swing, swing, 1e-9) << leg.name << swing << flap << knee;
           EXPECT_NEAR(found.flap, flap, 1e-9);
@@ -72,9 +72,9 @@ TEST(Leg, APostureThatWasForwardIsFoundBackward) {
 }
 
 TEST(Leg, OutOfReachItIsStraightTowardsThePoint) {
-  for (const tools::Leg& leg : tools::legs_of(ers7())) {
+  for (const motion::Leg& leg : motion::legs_of(ers7())) {
     const sim::Vector3d far = leg.hip + sim::Vector3d(0.1, leg.foot.y() - leg.hip.y(), -0.3);
-    const tools::LegPosture posture = leg.posture_at(far);
+    const motion::LegPosture posture = leg.posture_at(far);
     EXPECT_FALSE(posture.reached);
     const sim::Vector3d foot = leg.foot_at(posture) - leg.hip, desired = far - leg.hip;
     EXPECT_LT(foot.norm(), desired.norm());
@@ -86,7 +86,7 @@ TEST(Leg, AVehicleWithoutLegsIsRefusedWithWhatIsMissing) {
   sim::VehicleConfig vehicle = ers7();
   std::erase_if(vehicle.devices, [](const sim::DeviceConfig& one) { return one.name == "rh_flap"; });
   try {
-    tools::legs_of(vehicle);
+    motion::legs_of(vehicle);
     FAIL();
   } catch (const sim::ConfigError& error) {
     EXPECT_STREQ(error.what(), "vehicle 'ers7': no legs for a gait: it has no joint_servo 'rh_flap'");
@@ -96,10 +96,10 @@ TEST(Leg, AVehicleWithoutLegsIsRefusedWithWhatIsMissing) {
 TEST(HalfEllipse, TheFeetAreOnTheLocus) {
   const HalfEllipse gait(ers7());
   const std::vector<double> values = start_of(gait);
-  for (const tools::Leg& leg : gait.legs())
+  for (const motion::Leg& leg : gait.legs())
     for (int i = 0; i < 100; ++i) {
       const sim::Vector3d desired = HalfEllipse::foot_at(values, leg, i / 100.0);
-      const tools::LegPosture posture = leg.posture_at(desired);
+      const motion::LegPosture posture = leg.posture_at(desired);
       ASSERT_TRUE(posture.reached);
       EXPECT_LT((leg.foot_at(posture) - desired).norm(), 1e-9);
     }
@@ -113,7 +113,7 @@ TEST(HalfEllipse, TheMotionPutsTheFeetOnTheLocus) {
   values[HalfEllipse::period] = 1;
   const sim::JointMotion motion = gait.motion(values);
   const int frames = gait.frames(values);
-  const tools::Leg& leg = gait.legs()[0];
+  const motion::Leg& leg = gait.legs()[0];
   for (int i = 0; i < frames; ++i) {
     const auto& joints = motion.keys[static_cast<std::size_t>(i)].joints;  // lf is the first leg
     const sim::Vector3d foot = leg.foot_at({joints[0].second, joints[1].second, joints[2].second});
@@ -126,7 +126,7 @@ TEST(HalfEllipse, ALocusHasItsLengthHeightAndShareOnTheGround) {
   std::vector<double> values = start_of(gait);
   values[HalfEllipse::ground_share] = 0.4;
   values[HalfEllipse::skew] = 0.1;
-  for (const tools::Leg& leg : gait.legs()) {
+  for (const motion::Leg& leg : gait.legs()) {
     const bool left = leg.hip.y() > 0;
     const double length_m = values[HalfEllipse::length] * (left ? 1.1 : 0.9);
     const sim::Vector3d down = HalfEllipse::foot_at(values, leg, 0), up = HalfEllipse::foot_at(values, leg, 0.4);
@@ -140,7 +140,7 @@ TEST(HalfEllipse, ServosAreWithinTheirRangesAndSpeedsInAllCornersOfTheSearch) {
   const sim::VehicleConfig vehicle = ers7();
   const HalfEllipse gait(vehicle);
   for (unsigned bits = 0; bits < 4096; bits += 13) {
-    const auto findings = tools::check_motion(gait.motion(corner_of(gait, bits)), vehicle);
+    const auto findings = motion::check_motion(gait.motion(corner_of(gait, bits)), vehicle);
     EXPECT_TRUE(findings.empty()) << bits << ": " << findings.front().text();
   }
 }
@@ -171,9 +171,9 @@ TEST(HalfEllipse, LeftAndRightAreHalfAPeriodApart) {
 
 TEST(HalfEllipse, StepsOfACourseAreLimitedWithoutDelay) {
   // A jump of 4 in steps of 1 begins before it and ends after it, in equal parts.
-  const std::vector<double> limited = tools::with_limited_steps({0, 0, 0, 0, 4, 4, 4, 4}, 1);
+  const std::vector<double> limited = motion::with_limited_steps({0, 0, 0, 0, 4, 4, 4, 4}, 1);
   EXPECT_EQ(limited, (std::vector<double>{1.5, 1, 1, 1.5, 2.5, 3, 3, 2.5}));
-  EXPECT_EQ(tools::with_limited_steps({0, 1, 2, 1}, 1), (std::vector<double>{0, 1, 2, 1}));
+  EXPECT_EQ(motion::with_limited_steps({0, 1, 2, 1}, 1), (std::vector<double>{0, 1, 2, 1}));
 }
 
 }  // namespace

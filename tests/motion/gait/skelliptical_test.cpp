@@ -11,16 +11,16 @@
 
 namespace {
 
-using tools::Skelliptical;
+using motion::Skelliptical;
 
 sim::VehicleConfig aibo() {
   return sim::load_vehicle(test_support::source_path("vehicles/ers7.yaml"));
 }
 
 /// Returns a leg whose foot is the point on which this walk stands.
-tools::Leg standing(tools::Leg leg) {
+motion::Leg standing(motion::Leg leg) {
   // From the knee, by the measurements of rUNSWift: 25 mm back and 40 down in front, 35 ahead and 50 down behind.
-  const bool front = tools::is_front(leg);
+  const bool front = motion::is_front(leg);
   leg.foot = leg.knee + sim::Vector3d(front ? -0.025 : 0.035, leg.foot.y() - leg.knee.y(), front ? -0.040 : -0.050);
   return leg;
 }
@@ -67,16 +67,16 @@ TEST(Skelliptical, TheFeetOfFastForwardAreWhereItsNumbersSay) {
   const double tilt_rad = std::asin(0.0451 / 0.130);
   // Lengths are in proportion to the front legs, whose length is known to 0.01 %.
   const double rounding = 2e-5;
-  for (const tools::Leg& leg : gait.legs()) {
-    const tools::LegPosture posture = gait.posture_at(values, {.forward_m = 0.05}, leg, 0);
+  for (const motion::Leg& leg : gait.legs()) {
+    const motion::LegPosture posture = gait.posture_at(values, {.forward_m = 0.05}, leg, 0);
     ASSERT_TRUE(posture.reached) << leg.name;
     const sim::Vector3d from_hip = standing(leg).foot_at(posture) - leg.hip;
     const double level_x = std::cos(tilt_rad) * from_hip.x() + std::sin(tilt_rad) * from_hip.z();
     const double level_z = -std::sin(tilt_rad) * from_hip.x() + std::cos(tilt_rad) * from_hip.z();
-    const bool front = tools::is_front(leg);
+    const bool front = motion::is_front(leg);
     EXPECT_NEAR(level_x, front ? 0.0271 : -0.0112, rounding) << leg.name;
     EXPECT_NEAR(level_z, front ? -0.0774 : -0.1225, rounding) << leg.name;
-    EXPECT_NEAR(tools::side_of(leg) * from_hip.y(), front ? 0.0096 : 0.0063, rounding) << leg.name;
+    EXPECT_NEAR(motion::side_of(leg) * from_hip.y(), front ? 0.0096 : 0.0063, rounding) << leg.name;
   }
 }
 
@@ -86,7 +86,7 @@ TEST(Skelliptical, FeetTurnAboutTheMiddleOfTheHips) {
   values[Skelliptical::thrust] = values[Skelliptical::canter] = 0;
   values[Skelliptical::front_side_body_height] = values[Skelliptical::front_body_height];
   const double tilt_rad = std::asin(0.0451 / 0.130), turn_rad = 0.3;
-  for (const tools::Leg& leg : gait.legs()) {
+  for (const motion::Leg& leg : gait.legs()) {
     const auto ground = [&](double phase) {
       const auto posture = gait.posture_at(values, {.turn_rad = turn_rad}, leg, phase);
       const sim::Vector3d p = standing(leg).foot_at(posture);
@@ -108,13 +108,13 @@ TEST(Skelliptical, TheGaitIsWithinTheRangesAndSpeedsOfTheServos) {
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::vector<double> values;
     unsigned bits = seed * 2654435761u;
-    for (const tools::GaitNumber& number : gait.numbers()) {
+    for (const motion::GaitNumber& number : gait.numbers()) {
       EXPECT_LE(number.low, number.start) << number.name;
       EXPECT_LE(number.start, number.high) << number.name;
       bits = bits * 1664525u + 1013904223u;
       values.push_back(number.low + (number.high - number.low) * (bits >> 16) / 65535.0);
     }
-    const auto findings = tools::check_motion(gait.motion(values), vehicle);
+    const auto findings = motion::check_motion(gait.motion(values), vehicle);
     EXPECT_TRUE(findings.empty()) << seed << ": " << findings.front().text();
   }
 }
@@ -122,7 +122,7 @@ TEST(Skelliptical, TheGaitIsWithinTheRangesAndSpeedsOfTheServos) {
 TEST(Skelliptical, DiagonalLegsMoveTogether) {
   const Skelliptical gait(aibo());
   const sim::JointMotion motion =
-      gait.motion(Skelliptical::fast_forward(), {.forward_m = 0.05}, tools::CourseLimit::range);
+      gait.motion(Skelliptical::fast_forward(), {.forward_m = 0.05}, motion::CourseLimit::range);
   // 22 frames of 8 ms in half a period.
   ASSERT_EQ(motion.keys.size(), 45u);
   for (std::size_t i = 0; i < 44; ++i)

@@ -22,9 +22,9 @@ sim::ConfigNode parsed(const std::string& text) {
 std::string error_of(const std::string& world) {
   sim::JointMotion take;
   take.recorded.emplace().embedded_world = parsed(world);
-  tools::StageOptions stage;
+  motion::StageOptions stage;
   try {
-    EXPECT_TRUE(tools::use_embedded_world(stage, take, "take.yaml"));
+    EXPECT_TRUE(motion::use_embedded_world(stage, take, "take.yaml"));
     return "";
   } catch (const sim::ConfigError& error) {
     return error.what();
@@ -34,7 +34,7 @@ std::string error_of(const std::string& world) {
 TEST(EmbeddedWorld, HoldsTheMotionsOfItsPlayersAndNoFiles) {
   const sim::LoadedWorld loaded = sim::load_world(test_support::source_path("worlds/ers7_seed_studio.yaml"));
   EXPECT_THAT(sim::to_yaml(loaded.resolved), HasSubstr("file: "));
-  const std::string world = sim::to_yaml(tools::embeddable_world(loaded.resolved, "ers7_seed_studio"));
+  const std::string world = sim::to_yaml(motion::embeddable_world(loaded.resolved, "ers7_seed_studio"));
   EXPECT_THAT(world, Not(HasSubstr("file: ")));
   EXPECT_THAT(world, HasSubstr("motion: push_ups"));
   EXPECT_EQ(error_of(world), "");
@@ -54,14 +54,14 @@ TEST(EmbeddedWorld, OfAStrangerCannotNameFilesOrPrograms) {
             "take.yaml: 'embedded_world' names the file '/etc/passwd'" + rule);
   EXPECT_EQ(error_of("shoal: 1\nobjects: [{name: a, parts: [{shape: mesh, mesh: ../../a.stl}]}]"),
             "take.yaml: 'embedded_world' names the file '../../a.stl'" + rule);
-  EXPECT_EQ(error_of("shoal: 1\ndescription: " + std::string(tools::max_embedded_bytes, 'x')),
+  EXPECT_EQ(error_of("shoal: 1\ndescription: " + std::string(motion::max_embedded_bytes, 'x')),
             "take.yaml: 'embedded_world' must have at most 1000000 bytes, got 1000023");
 }
 
 TEST(EmbeddedWorld, IsRefusedBeforeARecordingWhenItNamesFiles) {
   try {
-    tools::embeddable_world(parsed("shoal: 1\nobjects: [{name: a, parts: [{shape: mesh, mesh: /tmp/a.stl}]}]"),
-                            "rocks");
+    motion::embeddable_world(parsed("shoal: 1\nobjects: [{name: a, parts: [{shape: mesh, mesh: /tmp/a.stl}]}]"),
+                             "rocks");
     FAIL();
   } catch (const sim::ConfigError& error) {
     EXPECT_THAT(error.what(), HasSubstr("--embed: world 'rocks' names the file '/tmp/a.stl'"));
@@ -69,8 +69,8 @@ TEST(EmbeddedWorld, IsRefusedBeforeARecordingWhenItNamesFiles) {
 }
 
 TEST(EmbeddedWorld, IsUsedOnlyWhereATakeHoldsOne) {
-  tools::StageOptions stage;
-  EXPECT_FALSE(tools::use_embedded_world(stage, {}, "take.yaml"));
+  motion::StageOptions stage;
+  EXPECT_FALSE(motion::use_embedded_world(stage, {}, "take.yaml"));
   EXPECT_EQ(stage.tree, nullptr);
 }
 

@@ -8,8 +8,8 @@ namespace {
 using std::chrono::milliseconds;
 
 TEST(FramePace, CountsFramesThatAreLateByMoreThanAStep) {
-  tools::FramePace pace(milliseconds(8), milliseconds(2));
-  const tools::FramePace::Clock::time_point start{};
+  motion::FramePace pace(milliseconds(8), milliseconds(2));
+  const motion::FramePace::Clock::time_point start{};
   pace.restart(start);
   for (const int at_ms : {8, 18, 27, 32}) pace.begin(start + milliseconds(at_ms));  // due at 8, 16, 24 and 32
   EXPECT_EQ(pace.text(), "1 of 4 frames began more than a step, 2 ms, late, by 3.0 ms at most");
@@ -17,8 +17,8 @@ TEST(FramePace, CountsFramesThatAreLateByMoreThanAStep) {
 }
 
 TEST(FramePace, AfterALongDelayTheRecordingIsSlowerThanTheClock) {
-  tools::FramePace pace(milliseconds(8), milliseconds(2));
-  const tools::FramePace::Clock::time_point start{};
+  motion::FramePace pace(milliseconds(8), milliseconds(2));
+  const motion::FramePace::Clock::time_point start{};
   pace.restart(start);
   pace.begin(start + milliseconds(8 + 101));
   EXPECT_EQ(pace.due(), start + milliseconds(8 + 101 + 8));

@@ -7,8 +7,8 @@
 
 namespace {
 
+using experiment::InputEvent;
 using testing::ElementsAre;
-using tools::InputEvent;
 
 const std::vector<std::string> names{"hip", "knee", "foot"};
 
@@ -26,12 +26,12 @@ devices::JointControls controls() {
   return controls;
 }
 
-tools::JointCommands commands(std::vector<std::string> actions = {}) {
+motion::JointCommands commands(std::vector<std::string> actions = {}) {
   return {controls(), names, number_of, std::move(actions)};
 }
 
 TEST(JointCommands, AllKeysOfAFrameMoveTheirJointsInThisFrame) {
-  tools::JointCommands held = commands();
+  motion::JointCommands held = commands();
   held.key("1", true);
   held.key("w", true);
   held.key("3", true);
@@ -44,7 +44,7 @@ TEST(JointCommands, AllKeysOfAFrameMoveTheirJointsInThisFrame) {
 }
 
 TEST(JointCommands, AKeyThatGoesDownAndUpWithinAFrameMovesItsJointForOneFrame) {
-  tools::JointCommands held = commands();
+  motion::JointCommands held = commands();
   held.key("1", true);
   held.key("1", false);
   EXPECT_THAT(held.velocities(), ElementsAre(2, 0, 0));
@@ -52,7 +52,7 @@ TEST(JointCommands, AKeyThatGoesDownAndUpWithinAFrameMovesItsJointForOneFrame) {
 }
 
 TEST(JointCommands, ATapStartsAndStopsAJointOrTurnsItRound) {
-  tools::JointCommands held = commands();
+  motion::JointCommands held = commands();
   held.tap("2");
   EXPECT_THAT(held.velocities(), ElementsAre(0, 0.5, 0));
   held.tap("w");
@@ -66,7 +66,7 @@ TEST(JointCommands, ATapStartsAndStopsAJointOrTurnsItRound) {
 }
 
 TEST(JointCommands, SticksMoveTheJointsOfTheSelectedSet) {
-  tools::JointCommands held = commands();
+  motion::JointCommands held = commands();
   EXPECT_EQ(held.set(), "leg");
   held.axis(0, 32767);
   held.axis(1, -32768);
@@ -87,7 +87,7 @@ TEST(JointCommands, SticksMoveTheJointsOfTheSelectedSet) {
 }
 
 TEST(JointCommands, OtherKeysAreWishesAndActions) {
-  tools::JointCommands held = commands({"[", "]"});
+  motion::JointCommands held = commands({"[", "]"});
   held.key("space", true);
   held.key("]", true);
   held.key("'", true);
@@ -95,7 +95,7 @@ TEST(JointCommands, OtherKeysAreWishesAndActions) {
   held.key("=", true);
   held.key("1", true);
   EXPECT_THAT(held.take_wishes(),
-              ElementsAre(tools::RecordWish::pause, tools::RecordWish::push, tools::RecordWish::finish));
+              ElementsAre(motion::RecordWish::pause, motion::RecordWish::push, motion::RecordWish::finish));
   EXPECT_TRUE(held.take_wishes().empty());
   EXPECT_THAT(held.take_actions(), ElementsAre(1));
   EXPECT_EQ(held.velocities()[0], 2 * 1.25);
@@ -105,7 +105,7 @@ TEST(JointCommands, OtherKeysAreWishesAndActions) {
 }
 
 TEST(JointCommands, WithoutControlsThePairsOfTheKeyboardFollowTheServos) {
-  tools::JointCommands held({}, names, number_of);
+  motion::JointCommands held({}, names, number_of);
   held.key("2", true);
   held.key("e", true);
   EXPECT_THAT(held.velocities(), ElementsAre(0, 1, -1));
@@ -113,13 +113,13 @@ TEST(JointCommands, WithoutControlsThePairsOfTheKeyboardFollowTheServos) {
 }
 
 TEST(RecordInput, TakesEventsOfAFileUpToATime) {
-  tools::JointCommands held = commands();
+  motion::JointCommands held = commands();
   // Codes of the keys 1, w and 3; times far from 0, as the kernel stamps them.
-  tools::EventFileInput file({{5'000'000, InputEvent::button, 2, 1},
-                              {5'008'000, InputEvent::button, 17, 1},
-                              {5'008'000, InputEvent::button, 4, 1},
-                              {5'008'001, InputEvent::button, 2, 0},
-                              {5'020'000, InputEvent::report, InputEvent::report_dropped, 0}});
+  motion::EventFileInput file({{5'000'000, InputEvent::button, 2, 1},
+                               {5'008'000, InputEvent::button, 17, 1},
+                               {5'008'000, InputEvent::button, 4, 1},
+                               {5'008'001, InputEvent::button, 2, 0},
+                               {5'020'000, InputEvent::report, InputEvent::report_dropped, 0}});
   EXPECT_TRUE(file.read(0, held));
   EXPECT_THAT(held.velocities(), ElementsAre(2, 0, 0));
   EXPECT_TRUE(file.read(8000, held));
@@ -132,9 +132,9 @@ TEST(RecordInput, TakesEventsOfAFileUpToATime) {
 }
 
 TEST(JointCommands, KeysOfActionsAreCharactersAndWords) {
-  for (const char* name : {"[", "a", ",", "up", "escape", "backspace"}) EXPECT_TRUE(tools::is_key_name(name)) << name;
+  for (const char* name : {"[", "a", ",", "up", "escape", "backspace"}) EXPECT_TRUE(motion::is_key_name(name)) << name;
   for (const char* name : {"", " ", "ctrl+a", "upp", "up,", ", ", "up, down", "f1"})
-    EXPECT_FALSE(tools::is_key_name(name)) << name;
+    EXPECT_FALSE(motion::is_key_name(name)) << name;
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ constexpr double frame_s = 0.008;
 /// A leg whose imu is noisy: its state depends on every step.
 struct Studio {
   test_support::ScratchFolder folder;
-  tools::RecordOptions options;
+  motion::RecordOptions options;
   std::string file = folder.file("swing.yaml");
 
   explicit Studio(const std::string& world = test::leg_world(
@@ -39,24 +39,24 @@ struct Studio {
     options.name = "swing";
     std::ofstream(options.stage.world) << world;
   }
-  std::unique_ptr<tools::MotionRecorder> recorder() {
-    return std::make_unique<tools::MotionRecorder>(options, tools::journal_path(file));
+  std::unique_ptr<motion::MotionRecorder> recorder() {
+    return std::make_unique<motion::MotionRecorder>(options, motion::journal_path(file));
   }
   /// Ends a recording, saves it, and proves that its exact motion, played in the same world, ends in the same state.
-  sim::JointMotion save(std::unique_ptr<tools::MotionRecorder> recorder) {
+  sim::JointMotion save(std::unique_ptr<motion::MotionRecorder> recorder) {
     const std::uint64_t hash = recorder->finish();
     recorder.reset();
-    sim::JointMotion keyed = tools::save_take(file, tools::read_journal(file).value(), "", "record").motion;
-    EXPECT_FALSE(std::filesystem::exists(tools::journal_path(file)));
-    tools::MotionStage stage(options.stage, sim::load_motion(tools::take_path(file)));
+    sim::JointMotion keyed = motion::save_take(file, motion::read_journal(file).value(), "", "record").motion;
+    EXPECT_FALSE(std::filesystem::exists(motion::journal_path(file)));
+    motion::MotionStage stage(options.stage, sim::load_motion(motion::take_path(file)));
     stage.play_out(0, 600);
     EXPECT_EQ(stage.state_hash(), hash);
-    EXPECT_LE(tools_difference(keyed), tools::key_tolerance * (1 + 1e-9));
+    EXPECT_LE(tools_difference(keyed), motion::key_tolerance * (1 + 1e-9));
     return keyed;
   }
   /// Greatest difference of a motion to the exact one.
   double tools_difference(const sim::JointMotion& keyed) const {
-    const auto exact = sim::load_motion(tools::take_path(file)).tracks();
+    const auto exact = sim::load_motion(motion::take_path(file)).tracks();
     double greatest = 0;
     for (const sim::MotionTrack& track : keyed.tracks())
       for (const sim::MotionTrack& other : exact)
@@ -72,7 +72,7 @@ sim::MotionTrack track_of(const std::vector<sim::MotionTrack>& tracks, const std
   throw std::runtime_error("no track of " + joint);
 }
 
-void record(tools::MotionRecorder& recorder, int frames, double hip, double knee) {
+void record(motion::MotionRecorder& recorder, int frames, double hip, double knee) {
   for (int i = 0; i < frames; ++i) recorder.frame(std::vector<double>{hip, knee});
 }
 
@@ -108,7 +108,7 @@ TEST(MotionRecorder, JointsStartInTheSameFrameAndAtOnce) {
   EXPECT_LT(set_point("knee"), 0);
   record(*recorder, 3, 0, 0);
   studio.save(std::move(recorder));
-  const auto exact = sim::load_motion(tools::take_path(studio.file)).tracks();
+  const auto exact = sim::load_motion(motion::take_path(studio.file)).tracks();
   for (const char* joint : {"hip", "knee"}) {
     const auto keys = track_of(exact, joint).keys;
     const auto moved = std::find_if(keys.begin(), keys.end(), [](const sim::TrackKey& key) { return key.value != 0; });
@@ -126,7 +126,7 @@ TEST(MotionRecorder, EqualVelocitiesGiveAnEqualRecording) {
       recorder->frame(std::vector<double>{std::sin(0.1 * frame), std::cos(0.07 * frame)});
     studio.save(std::move(recorder));
     const std::string text = sim::motion_text(sim::load_motion(studio.file)) +
-                             sim::motion_text(sim::load_motion(tools::take_path(studio.file)));
+                             sim::motion_text(sim::load_motion(motion::take_path(studio.file)));
     if (i == 0) first = text;
     EXPECT_EQ(text, first);
   }
@@ -172,8 +172,8 @@ TEST(MotionRecorder, TheNeckOfAnErs7WaitsForItsHead) {
   // Motion and take keep all limits of the robot.
   const sim::JointMotion motion = studio.save(std::move(recorder));
   const sim::VehicleConfig ers7 = sim::load_vehicle(test_support::source_path("vehicles/ers7.yaml"), {});
-  for (const sim::JointMotion& each : {motion, sim::load_motion(tools::take_path(studio.file))})
-    for (const tools::MotionFinding& finding : tools::check_motion(each, ers7)) ADD_FAILURE() << finding.text();
+  for (const sim::JointMotion& each : {motion, sim::load_motion(motion::take_path(studio.file))})
+    for (const motion::MotionFinding& finding : motion::check_motion(each, ers7)) ADD_FAILURE() << finding.text();
 }
 
 TEST(MotionRecorder, GoesBackToTheStateOfThatInstant) {
@@ -238,7 +238,7 @@ TEST(MotionRecorder, OverdubKeepsTheOtherTracksAndTheirKeys) {
   record(*recorder, 40, 9, -1);  // the velocity of a joint that plays has no effect
   EXPECT_FALSE(recorder->is_full());
   const sim::JointMotion motion = studio.save(std::move(recorder));
-  const sim::JointMotion exact = sim::load_motion(tools::take_path(studio.file));
+  const sim::JointMotion exact = sim::load_motion(motion::take_path(studio.file));
   const auto before = track_of(base.tracks(), "hip").keys;
   const auto after = track_of(exact.tracks(), "hip").keys;
   ASSERT_EQ(after.size(), before.size());
@@ -253,7 +253,7 @@ TEST(MotionRecorder, OverdubKeepsTheOtherTracksAndTheirKeys) {
   // The knee moves from its first value, and holds to the end of the motion.
   EXPECT_NEAR(track_of(exact.tracks(), "knee").value_at(99), 0.4 - 40 * frame_s, 1e-9);
   EXPECT_NEAR(exact.end_s(), 1, 1e-9);
-  EXPECT_EQ(tools::MotionStage(studio.options.stage, exact).player().to_s(), 1);
+  EXPECT_EQ(motion::MotionStage(studio.options.stage, exact).player().to_s(), 1);
 }
 
 TEST(MotionRecorder, AKeyAtTheTimeOfACurvedOneLeavesTheRecordedJointAsFrames) {
@@ -290,7 +290,7 @@ TEST(MotionRecorder, APartThatIsRecordedAnewEndsAtTheValuesOfTheMotion) {
   auto recorder = studio.recorder();
   while (!recorder->is_full()) recorder->frame(std::vector<double>{5, -5});
   const sim::JointMotion motion = studio.save(std::move(recorder));
-  const sim::JointMotion exact = sim::load_motion(tools::take_path(studio.file));
+  const sim::JointMotion exact = sim::load_motion(motion::take_path(studio.file));
   for (const char* joint : {"hip", "knee"}) {
     const sim::MotionTrack old = track_of(base.tracks(), joint);
     double fastest = 0, other = 0;
@@ -361,7 +361,7 @@ TEST(MotionRecorder, APartWithoutAnEndMayGoBeyondTheMotion) {
     record(*recorder, 123, 0, 0.1);
     EXPECT_TRUE(recorder->is_full()) << loop;
     recorder.reset();
-    std::filesystem::remove(tools::journal_path(studio.file));
+    std::filesystem::remove(motion::journal_path(studio.file));
   }
 }
 
@@ -372,16 +372,16 @@ TEST(MotionRecorder, ThePushMarginIsThatOfTheFramesAndChangesNothing) {
   std::vector<double> bend(recorder->joints().size(), 0.0);
   for (const char* knee : {"lf_knee", "rf_knee", "lh_knee", "rh_knee"}) bend[recorder->find(knee).value()] = 1;
   for (int i = 0; i < 60; ++i) recorder->frame(bend);
-  const tools::PushMargin margin = recorder->push_margin();
+  const motion::PushMargin margin = recorder->push_margin();
   EXPECT_GT(margin.least_Ns(), 0);
   EXPECT_LT(margin.least_Ns(), 6 * margin.mass_kg);
   studio.save(std::move(recorder));  // the state at the end is the same without it
   // Copies have the recorded frames: the margin is that of the motion, which holds where the recording was measured.
-  tools::MotionStage stage(studio.options.stage, sim::load_motion(tools::take_path(studio.file)));
-  tools::PushOptions push;
+  motion::MotionStage stage(studio.options.stage, sim::load_motion(motion::take_path(studio.file)));
+  motion::PushOptions push;
   push.watch_s = 1;
   push.resolution_mps = 1.0 / 16;
-  EXPECT_EQ(tools::push_margins(stage, {margin.at_s}, push).front().withstood_mps, margin.withstood_mps);
+  EXPECT_EQ(motion::push_margins(stage, {margin.at_s}, push).front().withstood_mps, margin.withstood_mps);
 }
 
 TEST(MotionRecorder, SaysWhatCannotBeRecorded) {
@@ -402,7 +402,7 @@ TEST(MotionRecorder, SaysWhatCannotBeRecorded) {
   studio.options.from_s = 0.5;
   studio.options.to_s = 3;
   EXPECT_THAT(error(), HasSubstr("the part must lie within the motion, from 0 to 1 s, got 0.5 to 3"));
-  EXPECT_FALSE(std::filesystem::exists(tools::journal_path(studio.file)));
+  EXPECT_FALSE(std::filesystem::exists(motion::journal_path(studio.file)));
 }
 
 /// Memory of this process, bytes.
@@ -432,7 +432,7 @@ TEST(MotionRecorder, AnHourTakesNoMoreMemoryThanItsFirstMinutes) {
   EXPECT_NEAR(recorder->now_s(), 3600, 1);
   const std::uint64_t hash = recorder->finish();
   recorder.reset();
-  EXPECT_EQ(tools::read_take(tools::journal_path(studio.file)).frame_count(), 450'003u);
+  EXPECT_EQ(motion::read_take(motion::journal_path(studio.file)).frame_count(), 450'003u);
   EXPECT_NE(hash, 0u);
 }
 

@@ -39,10 +39,10 @@ class ViewedRecording {
       std::ofstream(options_.stage.world) << test::leg_world(
           "        - {name: group, type: joint_group}\n"
           "        - {name: player, type: motion_player, group: group}\n");
-    recorder_ = std::make_unique<tools::MotionRecorder>(options_, tools::journal_path(file_));
-    tools::ViewOptions page;
+    recorder_ = std::make_unique<motion::MotionRecorder>(options_, motion::journal_path(file_));
+    experiment::ViewOptions page;
     page.port = 0;
-    view_.reset(new (used_.data()) tools::RecordView(page, *recorder_));
+    view_.reset(new (used_.data()) motion::RecordView(page, *recorder_));
     thread_ = std::thread([this] {
       while (!ends_) {
         if (const double by_s = back_s_.exchange(0); by_s > 0) {
@@ -62,8 +62,8 @@ class ViewedRecording {
     const std::uint64_t hash = recorder_->finish();
     view_.reset();
     recorder_.reset();
-    const sim::JointMotion motion = tools::save_take(file_, tools::read_journal(file_).value(), "", "record").motion;
-    tools::MotionStage stage(options_.stage, sim::load_motion(tools::take_path(file_)));
+    const sim::JointMotion motion = motion::save_take(file_, motion::read_journal(file_).value(), "", "record").motion;
+    motion::MotionStage stage(options_.stage, sim::load_motion(motion::take_path(file_)));
     stage.play_out(0, 600);
     EXPECT_EQ(stage.state_hash(), hash);
     return motion;
@@ -73,7 +73,7 @@ class ViewedRecording {
 
  private:
   struct Destroy {
-    void operator()(tools::RecordView* view) const { view->~RecordView(); }
+    void operator()(motion::RecordView* view) const { view->~RecordView(); }
   };
 
   void stop() {
@@ -83,10 +83,10 @@ class ViewedRecording {
 
   const test_support::ScratchFolder folder_;
   const std::string file_ = folder_.file("rest.yaml");
-  tools::RecordOptions options_;
-  std::unique_ptr<tools::MotionRecorder> recorder_;
-  std::vector<unsigned char> used_ = std::vector<unsigned char>(sizeof(tools::RecordView), 0x55);
-  std::unique_ptr<tools::RecordView, Destroy> view_;
+  motion::RecordOptions options_;
+  std::unique_ptr<motion::MotionRecorder> recorder_;
+  std::vector<unsigned char> used_ = std::vector<unsigned char>(sizeof(motion::RecordView), 0x55);
+  std::unique_ptr<motion::RecordView, Destroy> view_;
   std::atomic<bool> ends_ = false;
   std::atomic<double> back_s_ = 0;
   std::thread thread_;

@@ -10,7 +10,7 @@
 
 namespace {
 
-using tools::SetPoints;
+using motion::SetPoints;
 
 /// A neck and a nod, both with 200 deg/s, 2 deg in a frame.  The nod is at least -5 deg, and 5 deg while the neck is
 /// below -40 deg.

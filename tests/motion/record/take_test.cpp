@@ -18,7 +18,7 @@ const std::string head = "shoal recording 1\n{joints: [hip, knee], frame_s: 0.01
 
 std::string error_of(const std::string& text) {
   try {
-    tools::parse_take(text, "wave.journal");
+    motion::parse_take(text, "wave.journal");
   } catch (const sim::ConfigError& error) {
     return error.what();
   }
@@ -26,19 +26,19 @@ std::string error_of(const std::string& text) {
 }
 
 TEST(Take, AFrameNamesOnlyWhatHasChanged) {
-  const tools::Take take = tools::parse_take(head + "f 0=0.5 1=-1\nf\nf 1=2\n", "wave.journal");
+  const motion::Take take = motion::parse_take(head + "f 0=0.5 1=-1\nf\nf 1=2\n", "wave.journal");
   EXPECT_THAT(take.frames[0], ElementsAre(0.5, 0.5, 0.5));
   EXPECT_THAT(take.frames[1], ElementsAre(-1, -1, 2));
   EXPECT_EQ(take.settings.frame_s, 0.01);
 }
 
 TEST(Take, ALineThatWasCutIsIgnored) {
-  const tools::Take take = tools::parse_take(head + "f 0=0 1=0\nf 0=1\nf 0=12.3", "wave.journal");
+  const motion::Take take = motion::parse_take(head + "f 0=0 1=0\nf 0=1\nf 0=12.3", "wave.journal");
   EXPECT_THAT(take.frames[0], ElementsAre(0, 1));
 }
 
 TEST(Take, ToGoBackDropsLaterFramesAndChanges) {
-  const tools::Take take = tools::parse_take(
+  const motion::Take take = motion::parse_take(
       head + "f 0=0 1=0\nf 0=1\nc 0.01 {remove: a}\nf 0=2\nc 0.02 {remove: b}\nb 1\nf 0=5 1=0\n", "wave.journal");
   EXPECT_THAT(take.frames[0], ElementsAre(0, 1, 5));
   ASSERT_EQ(take.changes.size(), 1u);
@@ -60,16 +60,16 @@ TEST(Take, SaysTheLineOfAMistake) {
 
 TEST(Take, WhatStandsBeforeABadLineIsKept) {
   const auto kept = [](const std::string& lines) {
-    std::optional<tools::TakeDamage> damage;
-    const tools::Take take = tools::parse_take(head + "f 0=0 1=0\nf 0=1\n" + lines, "wave.journal", &damage);
+    std::optional<motion::TakeDamage> damage;
+    const motion::Take take = motion::parse_take(head + "f 0=0 1=0\nf 0=1\n" + lines, "wave.journal", &damage);
     for (const std::vector<double>& values : take.frames) EXPECT_EQ(values.size(), 2u) << lines;
     EXPECT_THAT(take.frames[0], ElementsAre(0, 1)) << lines;
     EXPECT_TRUE(take.changes.empty()) << lines;
-    return damage.value_or(tools::TakeDamage{"none", 0});
+    return damage.value_or(motion::TakeDamage{"none", 0});
   };
   EXPECT_EQ(kept("").error, "none");
   EXPECT_EQ(kept("f 0=12.").error, "none");  // cut
-  const tools::TakeDamage bad = kept("f 0=5 1=x\nf 0=2\nf 0=3\n");
+  const motion::TakeDamage bad = kept("f 0=5 1=x\nf 0=2\nf 0=3\n");
   EXPECT_EQ(bad.error, "wave.journal:5: a value must be a number from -1000000 to 1000000, got 'x'");
   EXPECT_EQ(bad.lines, 3u);
   for (const std::string line :
@@ -79,9 +79,9 @@ TEST(Take, WhatStandsBeforeABadLineIsKept) {
 }
 
 TEST(Take, ItsFirstLinesMustBeGood) {
-  std::optional<tools::TakeDamage> damage;
+  std::optional<motion::TakeDamage> damage;
   for (const std::string& text : {std::string("mine\n"), head, head + "f 0=0\nf 0=0 1=0\n", head + "b 0\n"})
-    EXPECT_THROW(tools::parse_take(text, "wave.journal", &damage), sim::ConfigError) << text;
+    EXPECT_THROW(motion::parse_take(text, "wave.journal", &damage), sim::ConfigError) << text;
   EXPECT_FALSE(damage);
   EXPECT_THAT(error_of(head + "b 0\n"), HasSubstr(":3: a return must come after a frame"));
   EXPECT_THAT(error_of("shoal recording 1\n{joints: [a, a]}\n"), HasSubstr("'joints' names joint 'a' twice"));
@@ -95,38 +95,38 @@ TEST(Take, HasNoMoreValuesThanCanBeWritten) {
   for (int i = 0; i < 200; ++i) text += " " + std::to_string(i) + "=0";
   text += "\n";
   for (int i = 0; i < 100'001; ++i) text += "f\n";
-  EXPECT_EQ(tools::max_take_frames(200), 100'000u);
-  EXPECT_EQ(tools::max_take_frames(1), 1'000'000u);
+  EXPECT_EQ(motion::max_take_frames(200), 100'000u);
+  EXPECT_EQ(motion::max_take_frames(1), 1'000'000u);
   EXPECT_THAT(error_of(text), HasSubstr(":100003: must have at most 100000 frames"));
 }
 
 TEST(TakeJournal, HoldsEachFrameAtOnceAndExactly) {
   const test_support::ScratchFolder folder;
   const std::string path = folder.file("wave.yaml.journal");
-  tools::TakeSettings settings;
+  motion::TakeSettings settings;
   settings.joints = {"hip", "knee"};
   settings.world = "it's \"x\"";
   settings.set = {"run.seed=2"};
   settings.from_s = 0.1;
   {
-    tools::TakeJournal journal(path, settings);
+    motion::TakeJournal journal(path, settings);
     const double exact = 1.0 / 3;
     journal.frame(std::vector<double>{exact, 0});
     // Another reader sees it before the journal is closed.
-    tools::Take take = tools::read_take(path);
+    motion::Take take = motion::read_take(path);
     EXPECT_EQ(take.frames[0][0], exact);
     EXPECT_EQ(take.settings.world, settings.world);
     EXPECT_EQ(take.settings.set, settings.set);
     EXPECT_EQ(take.settings.from_s, 0.1);
-    EXPECT_TRUE(tools::is_recording(path));
+    EXPECT_TRUE(motion::is_recording(path));
     journal.frame(std::vector<double>{exact, 1e-300});
     journal.back(0);
     journal.frame(std::vector<double>{exact, 0});
-    take = tools::read_take(path);
+    take = motion::read_take(path);
     EXPECT_THAT(take.frames[1], ElementsAre(0, 0));
-    EXPECT_THROW(tools::TakeJournal(path, settings), std::runtime_error);
+    EXPECT_THROW(motion::TakeJournal(path, settings), std::runtime_error);
   }
-  EXPECT_FALSE(tools::is_recording(path));
+  EXPECT_FALSE(motion::is_recording(path));
 }
 
 }  // namespace

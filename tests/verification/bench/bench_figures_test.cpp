@@ -16,19 +16,20 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
-using tools::BenchFigures;
+using verification::BenchFigures;
 
-const tools::BenchOptions briefly{0.5, 1, {}};
+const verification::BenchOptions briefly{0.5, 1, {}};
 
 TEST(BenchFigures, HaveTheHashOfTheRunWithoutMeasurement) {
-  tools::BenchRun run(tools::land_scene(), 10);
+  verification::BenchRun run(verification::land_scene(), 10);
   run.run_for(1.5);
-  EXPECT_EQ(tools::measure_bench(tools::land_scene(), 10, 1, briefly).run_hash, run.world().state().run_hash());
+  EXPECT_EQ(verification::measure_bench(verification::land_scene(), 10, 1, briefly).run_hash,
+            run.world().state().run_hash());
 }
 
 TEST(BenchFigures, AreTheSameWorkInAChildProcess) {
-  const BenchFigures here = tools::measure_bench(tools::sea_scene(), 10, 1, briefly);
-  const BenchFigures apart = tools::measure_bench_apart(tools::sea_scene(), 10, 1, briefly);
+  const BenchFigures here = verification::measure_bench(verification::sea_scene(), 10, 1, briefly);
+  const BenchFigures apart = verification::measure_bench_apart(verification::sea_scene(), 10, 1, briefly);
   EXPECT_EQ(apart.run_hash, here.run_hash);
   EXPECT_EQ(apart.messages_per_s, here.messages_per_s);
   EXPECT_EQ(apart.step_s, 0.02);
@@ -37,7 +38,7 @@ TEST(BenchFigures, AreTheSameWorkInAChildProcess) {
 }
 
 TEST(BenchFigures, CountRaysAndMessages) {
-  const BenchFigures land = tools::measure_bench(tools::land_scene(), 10, 1, briefly);
+  const BenchFigures land = verification::measure_bench(verification::land_scene(), 10, 1, briefly);
   EXPECT_NEAR(land.rays_per_s, 1800, 1);    // 180 rays at 10 Hz
   EXPECT_NEAR(land.messages_per_s, 30, 1);  // scan, odometry and command, 10 Hz each
   EXPECT_GE(land.contacts, 2.5);            // wheels and caster, which a bump may lift
@@ -48,7 +49,7 @@ TEST(BenchFigures, PartsAddUpToTheTimeOfAStep) {
   // Of different seconds of the run, in which other programs may use the caches: then they are measured again.
   double parts = 0;
   for (int i = 0; i < 10 && !(parts > 0.5 && parts < 2); ++i) {
-    const BenchFigures land = tools::measure_bench(tools::land_scene(), 100, 1, {0.5, 4, {}});
+    const BenchFigures land = verification::measure_bench(verification::land_scene(), 100, 1, {0.5, 4, {}});
     parts = std::accumulate(land.part_ms.begin(), land.part_ms.end(), 0.0) / land.cpu_ms_per_vehicle_s;
   }
   EXPECT_GT(parts, 0.5);
@@ -60,7 +61,7 @@ TEST(BenchFigures, NameTheLargestPartsFirst) {
   figures.part_ms[static_cast<std::size_t>(sim::StepStage::physics)] = 6;
   figures.part_ms[static_cast<std::size_t>(sim::StepStage::rays)] = 3;
   figures.part_ms.back() = 1;
-  EXPECT_EQ(tools::largest_parts(figures), "physics 60 %, rays 30 %, programs 10 %");
+  EXPECT_EQ(verification::largest_parts(figures), "physics 60 %, rays 30 %, programs 10 %");
 }
 
 TEST(BenchFigures, FillEachColumnOfTheCsv) {
@@ -68,9 +69,9 @@ TEST(BenchFigures, FillEachColumnOfTheCsv) {
   BenchFigures figures;
   figures.vehicles = 10;
   figures.run_hash = 0xabc;
-  const std::string line = tools::bench_csv_line(tools::land_scene(), figures);
-  EXPECT_EQ(columns(line), columns(tools::bench_csv_head()));
-  EXPECT_THAT(tools::bench_csv_head(), StartsWith("scene,vehicles,threads,step_s,load_s,cpu_ms_per_vehicle_s,"));
+  const std::string line = verification::bench_csv_line(verification::land_scene(), figures);
+  EXPECT_EQ(columns(line), columns(verification::bench_csv_head()));
+  EXPECT_THAT(verification::bench_csv_head(), StartsWith("scene,vehicles,threads,step_s,load_s,cpu_ms_per_vehicle_s,"));
   EXPECT_THAT(line, StartsWith("land,10,1,"));
   EXPECT_THAT(line, HasSubstr(",0000000000000abc,"));
 }
@@ -78,14 +79,14 @@ TEST(BenchFigures, FillEachColumnOfTheCsv) {
 TEST(BenchFigures, WrongSettingIsTheSameErrorFromAChildProcess) {
   const auto error_lines = [](const auto& measure) -> std::vector<std::string> {
     try {
-      measure(tools::land_scene(), 10, 1, tools::BenchOptions{0.5, 1, {"physics.step_s=-1"}});
+      measure(verification::land_scene(), 10, 1, verification::BenchOptions{0.5, 1, {"physics.step_s=-1"}});
     } catch (const sim::ConfigError& error) {
       return error.lines();
     }
     return {};
   };
-  const auto apart = error_lines(tools::measure_bench_apart);
-  EXPECT_EQ(apart, error_lines(tools::measure_bench));
+  const auto apart = error_lines(verification::measure_bench_apart);
+  EXPECT_EQ(apart, error_lines(verification::measure_bench));
   EXPECT_THAT(apart, ElementsAre(HasSubstr("'step_s' must be")));
 }
 

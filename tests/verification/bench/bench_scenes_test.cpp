@@ -10,17 +10,17 @@
 
 namespace {
 
-using tools::BenchRun;
+using verification::BenchRun;
 
 /// A test for each scene; named after it.
-class BenchScenes : public testing::TestWithParam<tools::BenchScene> {};
+class BenchScenes : public testing::TestWithParam<verification::BenchScene> {};
 
-INSTANTIATE_TEST_SUITE_P(All, BenchScenes, testing::ValuesIn(tools::bench_scenes()),
+INSTANTIATE_TEST_SUITE_P(All, BenchScenes, testing::ValuesIn(verification::bench_scenes()),
                          [](const auto& scene) { return scene.param.name; });
 
 constexpr int some = 20;  // vehicles; two of each kind of the scene `mixed` at least
 
-std::uint64_t hash_after_2_s(const tools::BenchScene& scene, int threads) {
+std::uint64_t hash_after_2_s(const verification::BenchScene& scene, int threads) {
   BenchRun run(scene, some, {}, threads);
   run.run_for(2);
   return run.world().state().run_hash();
@@ -51,15 +51,15 @@ TEST_P(BenchScenes, MovesEveryVehicle) {
 
 TEST(BenchScene, NamesAreDifferentAndFound) {
   std::set<std::string> names;
-  for (const tools::BenchScene& scene : tools::bench_scenes()) {
+  for (const verification::BenchScene& scene : verification::bench_scenes()) {
     EXPECT_TRUE(names.insert(scene.name).second) << scene.name;
-    EXPECT_EQ(tools::find_bench_scene(scene.name), &scene);
+    EXPECT_EQ(verification::find_bench_scene(scene.name), &scene);
   }
-  EXPECT_EQ(tools::find_bench_scene("moon"), nullptr);
+  EXPECT_EQ(verification::find_bench_scene("moon"), nullptr);
 }
 
 TEST(BenchScene, RoversOfTheCrowdPushAgainstEachOther) {
-  BenchRun run(tools::crowd_scene(), 25);
+  BenchRun run(verification::crowd_scene(), 25);
   run.run_for(3);
   int contacts = 0;
   for (int i = 0; i < 100; ++i) {
@@ -72,7 +72,7 @@ TEST(BenchScene, RoversOfTheCrowdPushAgainstEachOther) {
 }
 
 TEST(BenchScene, EveryModemOfTheAcousticSceneReceivesEveryMessage) {
-  BenchRun run(tools::acoustics_scene(), 10);
+  BenchRun run(verification::acoustics_scene(), 10);
   const auto flights = [&] { return run.world().acoustics().flights(); };
   run.run_for(10);
   const std::int64_t begin = flights();

@@ -11,21 +11,21 @@
 
 namespace {
 
-double distance_driven_m(const std::vector<sim::Vector3d>& from, const tools::BenchRun& scene) {
+double distance_driven_m(const std::vector<sim::Vector3d>& from, const verification::BenchRun& scene) {
   double sum_m = 0;
   for (std::size_t i = 0; i < from.size(); ++i)
     sum_m += (scene.world().vehicles()[i]->X_WV().translation() - from[i]).norm();
   return sum_m / static_cast<double>(from.size());
 }
 
-std::vector<sim::Vector3d> places(const tools::BenchRun& scene) {
+std::vector<sim::Vector3d> places(const verification::BenchRun& scene) {
   std::vector<sim::Vector3d> all;
   for (const auto& vehicle : scene.world().vehicles()) all.push_back(vehicle->X_WV().translation());
   return all;
 }
 
 TEST(RoverArena, CrowdsStayInOnePieceAndOnTheGround) {
-  tools::BenchRun scene(tools::scale_scene(), 50);
+  verification::BenchRun scene(verification::scale_scene(), 50);
   scene.run_for(8);  // time to meet
   double max_bend_m = 0;
   for (int i = 0; i < 70; ++i) {
@@ -48,7 +48,7 @@ TEST(RoverArena, CrowdsStayInOnePieceAndOnTheGround) {
 
 TEST(RoverArena, CrowdsGoAsFarAsWithTheExactSolver) {
   const auto driven_m = [](const std::vector<std::string>& sets) {
-    tools::BenchRun scene(tools::scale_scene(), 50, sets);
+    verification::BenchRun scene(verification::scale_scene(), 50, sets);
     const auto begin = places(scene);
     scene.run_for(10);
     return distance_driven_m(begin, scene);
@@ -59,8 +59,8 @@ TEST(RoverArena, CrowdsGoAsFarAsWithTheExactSolver) {
 }
 
 /// Returns the range of the middle beam of the rear one of two rovers, 2 m apart, one behind the other.
-double middle_range_m(const tools::RoverArena& arena) {
-  const sim::LoadedWorld loaded = sim::load_world_text(tools::rover_arena_text(arena, 2), "arena.yaml");
+double middle_range_m(const verification::RoverArena& arena) {
+  const sim::LoadedWorld loaded = sim::load_world_text(verification::rover_arena_text(arena, 2), "arena.yaml");
   sim::InProcessBus bus;
   sim::World world(loaded.config, bus);
   const auto scans = bus.open_mailbox("rover1.lidar", 1);
@@ -76,13 +76,13 @@ double middle_range_m(const tools::RoverArena& arena) {
 TEST(RoverArena, LidarsOfTheLandSceneSeeTheHullOfTheRoverAhead) {
   // Rovers at x = -1 m and 1 m; the lidar is at -0.76 m, the rear of the hull ahead at 0.75 m.  Noise: 1 cm; the wheels
   // settle by less.
-  const tools::RoverArena arena{"land", "[0.24, 0, 0.04]", true};
+  const verification::RoverArena arena{"land", "[0.24, 0, 0.04]", true};
   EXPECT_NEAR(middle_range_m(arena), 1.51, 0.06);
 }
 
 TEST(RoverArena, LidarsOfTheScaleSceneLookOverTheRoverAheadAtTheWall) {
   // The lidar is at -0.85 m, the wall at 2 m.
-  const tools::RoverArena arena{"scale", "[0.15, 0, 0.15]", true};
+  const verification::RoverArena arena{"scale", "[0.15, 0, 0.15]", true};
   EXPECT_NEAR(middle_range_m(arena), 2.85, 0.06);
 }
 

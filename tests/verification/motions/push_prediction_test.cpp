@@ -13,19 +13,19 @@
 
 namespace {
 
-using tools::PushTrial;
+using verification::PushTrial;
 
 constexpr double quarter_turn = std::numbers::pi / 2;
 
-tools::PushMargin margin_of(std::vector<double> withstood_mps) {
-  tools::PushMargin margin;
+motion::PushMargin margin_of(std::vector<double> withstood_mps) {
+  motion::PushMargin margin;
   margin.withstood_mps = std::move(withstood_mps);
   return margin;
 }
 
 TEST(PushPrediction, BetweenTwoDirectionsTheBoundIsAStraightLine) {
   // Four directions of 1 m/s: a square.
-  const tools::PushMargin square = margin_of({1, 1, 1, 1});
+  const motion::PushMargin square = margin_of({1, 1, 1, 1});
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(margin_at(square, i * quarter_turn), 1, 1e-12);
   EXPECT_NEAR(margin_at(square, quarter_turn / 2), std::sqrt(0.5), 1e-12);
   EXPECT_NEAR(margin_at(square, -quarter_turn / 2), std::sqrt(0.5), 1e-12);
@@ -48,7 +48,7 @@ TEST(PushPrediction, CountsWhatWasPredicted) {
   const std::vector<PushTrial> trials{push_trial(0.5, 0.4, 0.03, true), push_trial(0.5, 0.6, 0.02, true),
                                       push_trial(0.3, 0.2, 0.01, false), push_trial(0.1, 0.5, 0.01, false),
                                       push_trial(0.9, 0.5, 0.04, true)};
-  const tools::Detection by_margin = tools::detection_by_margin(trials);
+  const verification::Detection by_margin = verification::detection_by_margin(trials);
   EXPECT_EQ(by_margin.found, 2);
   EXPECT_EQ(by_margin.missed, 1);
   EXPECT_EQ(by_margin.false_alarms, 1);
@@ -56,12 +56,12 @@ TEST(PushPrediction, CountsWhatWasPredicted) {
   EXPECT_DOUBLE_EQ(by_margin.recall(), 2.0 / 3);
   EXPECT_DOUBLE_EQ(by_margin.precision(), 2.0 / 3);
   // A threshold between 0.01 and 0.02 m finds all three.
-  const tools::Detection by_static_check = tools::detection_by_static_check(trials, false);
+  const verification::Detection by_static_check = verification::detection_by_static_check(trials, false);
   EXPECT_EQ(by_static_check.recall(), 1);
   EXPECT_EQ(by_static_check.precision(), 1);
   // Of equal displacements both are above a threshold, or none.
-  const tools::Detection tie =
-      tools::detection_by_static_check({push_trial(0.1, 1, 0.02, true), push_trial(0.9, 1, 0.02, false)}, false);
+  const verification::Detection tie =
+      verification::detection_by_static_check({push_trial(0.1, 1, 0.02, true), push_trial(0.9, 1, 0.02, false)}, false);
   EXPECT_EQ(tie.found, 1);
   EXPECT_EQ(tie.false_alarms, 1);
 }
@@ -79,13 +79,13 @@ TEST_F(RandomMotion, StartsInAPoseAndKeepsRangesAndSpeeds) {
   sim::Random random(1, "test");
   for (int draw = 0; draw < 50; ++draw) {
     random.begin_step(draw);
-    const sim::JointMotion motion = tools::random_motion(poses, dog, {}, random);
+    const sim::JointMotion motion = verification::random_motion(poses, dog, {}, random);
     ASSERT_EQ(motion.keys.size(), 5u);
     // Limits of two joints are not kept.  Keys are not at whole frames: speeds may differ by a thousandth.
-    for (const tools::MotionFinding& finding : tools::check_motion(motion, dog))
-      EXPECT_TRUE(finding.rule == tools::MotionRule::two_joint_low ||
-                  finding.rule == tools::MotionRule::two_joint_high ||
-                  (finding.rule == tools::MotionRule::velocity && std::abs(finding.value) < 1.001 * finding.limit))
+    for (const motion::MotionFinding& finding : motion::check_motion(motion, dog))
+      EXPECT_TRUE(finding.rule == motion::MotionRule::two_joint_low ||
+                  finding.rule == motion::MotionRule::two_joint_high ||
+                  (finding.rule == motion::MotionRule::velocity && std::abs(finding.value) < 1.001 * finding.limit))
           << finding.text();
     const bool starts_in_a_pose = std::any_of(poses.begin(), poses.end(), [&](const sim::MotionPose& pose) {
       const auto tracks = motion.tracks();
@@ -103,9 +103,9 @@ using PushPredictionOfMotions = OfTheDog;
 
 /// A few of the motions of push_prediction_bench; docs/develop/benchmarks.md has its command.
 TEST_F(PushPredictionOfMotions, FindsMostFallsOfPushesThatItHasNotTried) {
-  tools::StageOptions stage;
+  motion::StageOptions stage;
   stage.world = test_support::source_path("worlds/ers7_studio.yaml");
-  tools::PredictionOptions options;
+  verification::PredictionOptions options;
   options.motions = 3;
   options.pushes = 12;
   options.seed = 7;
@@ -113,9 +113,9 @@ TEST_F(PushPredictionOfMotions, FindsMostFallsOfPushesThatItHasNotTried) {
   options.push.watch_s = 1;
   options.push.greatest_mps = 4;
   options.push.resolution_mps = 1.0 / 8;
-  const tools::PushTrials result = tools::push_trials(stage, dog, poses, options);
+  const verification::PushTrials result = verification::push_trials(stage, dog, poses, options);
   ASSERT_EQ(result.trials.size(), 36u);
-  const tools::Detection detection = tools::detection_by_margin(result.trials);
+  const verification::Detection detection = verification::detection_by_margin(result.trials);
   EXPECT_GE(detection.found + detection.missed, 9);  // a quarter falls
   EXPECT_GE(detection.false_alarms + detection.right_passes, 9);
   // Six directions and 1/8 m/s are coarse, and 36 pushes few: 13 falls are found, with 3 false alarms.

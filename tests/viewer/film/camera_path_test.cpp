@@ -11,10 +11,10 @@ namespace {
 
 using testing::HasSubstr;
 
-tools::CameraPath read(const std::string& text) {
+viewer::CameraPath read(const std::string& text) {
   const test_support::ScratchFolder folder;
   std::ofstream(folder.file("path.yaml")) << text;
-  return tools::read_camera_path(folder.file("path.yaml"));
+  return viewer::read_camera_path(folder.file("path.yaml"));
 }
 
 std::string path_error(const std::string& text) {
@@ -27,7 +27,7 @@ std::string path_error(const std::string& text) {
 }
 
 TEST(CameraPath, GoesThroughItsKeysAndStaysAtTheEnds) {
-  const tools::CameraPath path = read(
+  const viewer::CameraPath path = read(
       "keys:\n"
       "  - {at_s: 0, eye_m: [0, 0, 5], look_m: [10, 0, 0], fov_deg: 60}\n"
       "  - {at_s: 10, eye_m: [10, 0, 5], look_m: [20, 0, 0], fov_deg: 30}\n"

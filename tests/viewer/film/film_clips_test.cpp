@@ -27,26 +27,26 @@ class FilmClips : public test::ReplayTest {
       view.after_step();
     });
   }
-  tools::FilmOptions film() const {
-    tools::FilmOptions film;
+  viewer::FilmOptions film() const {
+    viewer::FilmOptions film;
     film.source = log;
     film.format = {80, 60, 10};
-    film.overlays = tools::parse_overlays("labels,clock");
+    film.overlays = viewer::parse_overlays("labels,clock");
     film.quiet = true;
     film.threads = 1;
     return film;
   }
-  tools::ClipOptions clips() const {
-    tools::ClipOptions clips;
+  viewer::ClipOptions clips() const {
+    viewer::ClipOptions clips;
     clips.directory = folder.file("clips");
     clips.ending = ".avi";
     clips.before_s = 0.5;
     clips.after_s = 0.5;
     return clips;
   }
-  std::string error_of(const tools::ClipOptions& options) const {
+  std::string error_of(const viewer::ClipOptions& options) const {
     try {
-      tools::make_clips(film(), options);
+      viewer::make_clips(film(), options);
     } catch (const std::exception& error) {
       return error.what();
     }
@@ -56,7 +56,7 @@ class FilmClips : public test::ReplayTest {
 
 TEST_F(FilmClips, AreNamedByTimeAndEventAndFollowItsVehicle) {
   record_events();
-  tools::ClipOutcome outcome;
+  viewer::ClipOutcome outcome;
   const auto clips = find_clips(log, FilmClips::clips(), outcome);
   ASSERT_GE(clips.size(), 2U);
   EXPECT_EQ(clips.size(), 2U) << "what an event logs belongs to it";
@@ -72,20 +72,20 @@ TEST_F(FilmClips, AreNamedByTimeAndEventAndFollowItsVehicle) {
 
 TEST_F(FilmClips, HaveTheFramesAroundTheirEvents) {
   record_events();
-  const tools::ClipOutcome outcome = tools::make_clips(film(), clips());
+  const viewer::ClipOutcome outcome = viewer::make_clips(film(), clips());
   ASSERT_GE(outcome.clips.size(), 2U);
   EXPECT_FALSE(outcome.interrupted);
   EXPECT_GE(outcome.frames, 20);
   EXPECT_LE(outcome.frames, 11 * static_cast<std::int64_t>(outcome.clips.size()));
-  for (const tools::Clip& clip : outcome.clips) EXPECT_GT(std::filesystem::file_size(clip.file), 1000U) << clip.file;
+  for (const viewer::Clip& clip : outcome.clips) EXPECT_GT(std::filesystem::file_size(clip.file), 1000U) << clip.file;
   EXPECT_THAT(outcome.to_text(), HasSubstr("follows r1"));
 }
 
 TEST_F(FilmClips, AreBoundedInNumber) {
   record_events();
-  tools::ClipOptions options = clips();
+  viewer::ClipOptions options = clips();
   options.max_clips = 1;
-  const tools::ClipOutcome outcome = tools::make_clips(film(), options);
+  const viewer::ClipOutcome outcome = viewer::make_clips(film(), options);
   EXPECT_EQ(outcome.clips.size(), 1U);
   EXPECT_EQ(outcome.without, outcome.events - 2) << "the clip has the event and what it logged";
   EXPECT_THAT(outcome.to_text(), HasSubstr("have no clip: the limits are --max-clips"));

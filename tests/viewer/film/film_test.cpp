@@ -29,20 +29,20 @@ std::string png_text(const std::string& file) {
 
 class FilmTest : public test::ReplayTest {
  protected:
-  tools::FilmOptions options(const std::string& out) const {
-    tools::FilmOptions film;
+  viewer::FilmOptions options(const std::string& out) const {
+    viewer::FilmOptions film;
     film.source = log;
     film.out = folder.file(out);
     film.format = {80, 60, 10};
     film.cameras = {"chase:r1"};
-    film.overlays = tools::parse_overlays("all");
+    film.overlays = viewer::parse_overlays("all");
     film.quiet = true;
     film.threads = 2;
     return film;
   }
-  std::string film_error(const tools::FilmOptions& film) const {
+  std::string film_error(const viewer::FilmOptions& film) const {
     try {
-      tools::make_film(film);
+      viewer::make_film(film);
     } catch (const std::exception& error) {
       return error.what();
     }
@@ -57,7 +57,7 @@ TEST_F(FilmTest, ShowsTheRunOfALogWhereItWas) {
   bridges::EventLogReader reader(log);
   while (const auto event = reader.next())
     if (event->channel == "sim.state") state = shoal::decode<shoal::sim_state_t>(event->payload, shoal::Finite::any);
-  const auto source = tools::open_film_source(log, {});
+  const auto source = viewer::open_film_source(log, {});
   const double step_s = sim::to_seconds(source->world().step_time());
   ASSERT_TRUE(source->advance_to(sim::from_seconds(static_cast<double>(test::steps) * step_s)));
   EXPECT_EQ(source->world().state().hash(), state_hash);
@@ -66,12 +66,12 @@ TEST_F(FilmTest, ShowsTheRunOfALogWhereItWas) {
   const sim::Vector3d p_W(state.position_m[0][0], state.position_m[0][1], state.position_m[0][2]);
   EXPECT_GT(p_W.x(), 0.3);
   // The segmentation shows the vehicle at the projection of this position, seen from above.
-  tools::SceneView view;
+  viewer::SceneView view;
   view.optics.width = 160, view.optics.height = 120;
   view.options.kind = sim::ImageKind::groups;
-  view.X_WS = tools::look_at(p_W + sim::Vector3d(0.3, 0.2, 4), p_W + sim::Vector3d(0.3, 0.2, 0));
+  view.X_WS = viewer::look_at(p_W + sim::Vector3d(0.3, 0.2, 4), p_W + sim::Vector3d(0.3, 0.2, 0));
   view.antialias = 1;
-  tools::ScenePainter painter(source->world(), 2);
+  viewer::ScenePainter painter(source->world(), 2);
   const sim::Image8 image = painter.paint(view).image;
   const auto pixel = sim::Optics(view.optics).project(view.X_WS.inverse() * p_W);
   ASSERT_TRUE(pixel);
@@ -83,16 +83,16 @@ TEST_F(FilmTest, ShowsTheRunOfALogWhereItWas) {
 
 TEST_F(FilmTest, HasAFrameForEachStepOfTheFilmAndEqualFramesTwice) {
   record(driven_world());
-  tools::FilmOptions film = options("a/");
+  viewer::FilmOptions film = options("a/");
   film.from_s = 0.5;
   film.until_s = 1.5;
   film.speed = 0.5;
-  const tools::FilmOutcome outcome = tools::make_film(film);
+  const viewer::FilmOutcome outcome = viewer::make_film(film);
   EXPECT_EQ(outcome.frames, 21);  // 1 s of the run is 2 s of film, and both ends
   EXPECT_NEAR(outcome.sim_s, 1, 1e-9);
   film.out = folder.file("b/");
   film.threads = 1;
-  tools::make_film(film);
+  viewer::make_film(film);
   for (const char* frame : {"frame_00000.png", "frame_00011.png", "frame_00020.png"})
     EXPECT_EQ(png_text(folder.file("a/") + frame), png_text(folder.file("b/") + frame)) << frame;
   EXPECT_NE(png_text(folder.file("a/frame_00000.png")), png_text(folder.file("a/frame_00020.png")));
@@ -100,9 +100,9 @@ TEST_F(FilmTest, HasAFrameForEachStepOfTheFilmAndEqualFramesTwice) {
 
 TEST_F(FilmTest, EndsWithTheLog) {
   record(driven_world());
-  tools::FilmOptions film = options("a.avi");
+  viewer::FilmOptions film = options("a.avi");
   film.until_s = 100;
-  EXPECT_EQ(tools::make_film(film).frames, 31);
+  EXPECT_EQ(viewer::make_film(film).frames, 31);
   film.from_s = 50;
   EXPECT_THAT(film_error(film), HasSubstr("ends at 3 s, before --from"));
 }
@@ -121,8 +121,8 @@ TEST_F(FilmTest, DrawsTheEstimatesOfTheLog) {
     });
   };
   with_estimates();
-  const tools::LogEstimates estimates(log, 0, 10, 0.05);
-  const tools::LogEstimate* found = estimates.find("r1", 1.05, 1);
+  const viewer::LogEstimates estimates(log, 0, 10, 0.05);
+  const viewer::LogEstimate* found = estimates.find("r1", 1.05, 1);
   ASSERT_NE(found, nullptr);
   EXPECT_NEAR(found->time_s, 1, 0.11);
   EXPECT_EQ(found->position_m, sim::Vector3d(0, 0.5, 0));
@@ -130,20 +130,20 @@ TEST_F(FilmTest, DrawsTheEstimatesOfTheLog) {
   EXPECT_EQ(estimates.find("r2", 1, 1), nullptr);
   EXPECT_EQ(estimates.vehicles(), std::vector<std::string>{"r1"});
   // The image differs by them.
-  tools::FilmOptions film = options("with/");
+  viewer::FilmOptions film = options("with/");
   film.until_s = film.from_s = 1;
   film.cameras = {"top"};
-  tools::make_film(film);
+  viewer::make_film(film);
   film.out = folder.file("without/");
   film.overlays.ellipses = false;
-  tools::make_film(film);
+  viewer::make_film(film);
   EXPECT_NE(png_text(folder.file("with/frame_00000.png")), png_text(folder.file("without/frame_00000.png")));
 }
 
 TEST_F(FilmTest, NamesVehiclesAndCamerasThatAreMissing) {
   record(driven_world());
   const auto with_camera = [&](const std::string& camera) {
-    tools::FilmOptions film = options("a.avi");
+    viewer::FilmOptions film = options("a.avi");
     film.cameras = {camera};
     return film_error(film);
   };
@@ -151,7 +151,7 @@ TEST_F(FilmTest, NamesVehiclesAndCamerasThatAreMissing) {
   EXPECT_THAT(with_camera("from:r1/eye"), HasSubstr("there is no camera 'r1/eye'; this world has none"));
   EXPECT_THAT(with_camera("chase"), HasSubstr("must be all, top,"));
   EXPECT_THAT(with_camera("no.yaml"), HasSubstr("no.yaml"));
-  tools::FilmOptions film = options("a.avi");
+  viewer::FilmOptions film = options("a.avi");
   film.split = true;
   EXPECT_THAT(film_error(film), HasSubstr("vehicle 'r1' has no camera for --split 2"));
   EXPECT_FALSE(std::filesystem::exists(folder.file("a.avi")));
@@ -161,7 +161,7 @@ TEST_F(FilmTest, NamesWhatALogLacks) {
   const std::string foreign = folder.file("foreign.lcm");
   record(driven_world());
   test::copy_log(log, foreign, [](const bridges::LogEvent& event) { return event.channel == "sim.info"; });
-  tools::FilmOptions film = options("a.avi");
+  viewer::FilmOptions film = options("a.avi");
   film.source = foreign;
   EXPECT_THAT(film_error(film), HasSubstr("contains no sim.info, which describes the world"));
   film.source = log;
@@ -171,14 +171,14 @@ TEST_F(FilmTest, NamesWhatALogLacks) {
 
 TEST_F(FilmTest, CamerasSeeTheVehicleInTheMiddle) {
   record(driven_world());
-  const auto source = tools::open_film_source(log, {});
+  const auto source = viewer::open_film_source(log, {});
   source->advance_to(sim::from_seconds(1));
   const sim::Vector3d p_W = source->world().find_vehicle("r1")->X_WV().translation();
-  tools::SceneView like;
+  viewer::SceneView like;
   like.optics.width = 160, like.optics.height = 120;
   for (const char* text : {"chase:r1", "orbit:r1", "top:r1", "top", "all"}) {
-    const auto rig = tools::make_camera_rig(text, source->world(), like);
-    const tools::SceneView view = rig->view(0);
+    const auto rig = viewer::make_camera_rig(text, source->world(), like);
+    const viewer::SceneView view = rig->view(0);
     const auto pixel = sim::Optics(view.optics).project(view.X_WS.inverse() * p_W);
     ASSERT_TRUE(pixel) << text;
     EXPECT_NEAR(pixel->x(), 80, 16) << text;

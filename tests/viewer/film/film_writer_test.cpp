@@ -40,7 +40,7 @@ std::size_t files_in(const std::string& folder) {
 }
 
 void write_frames(const std::string& file, int frames, bool finish = true) {
-  const auto writer = tools::make_film_writer(file, {64, 48, 30});
+  const auto writer = viewer::make_film_writer(file, {64, 48, 30});
   for (int i = 0; i < frames; ++i) writer->add(grey_frame(20 * i));
   if (finish) writer->finish();
 }
@@ -104,16 +104,16 @@ TEST(FilmWriter, NumbersImages) {
 
 TEST(FilmWriter, NamesWhatIsWrongBeforeTheWork) {
   const test_support::ScratchFolder folder;
-  const tools::FilmFormat format{64, 48, 30};
-  EXPECT_THROW(tools::check_film_file(folder.file("a.mov"), format), std::invalid_argument);
-  EXPECT_THROW(tools::check_film_file(folder.file("no/a.avi"), format), tools::FilmError);
+  const viewer::FilmFormat format{64, 48, 30};
+  EXPECT_THROW(viewer::check_film_file(folder.file("a.mov"), format), std::invalid_argument);
+  EXPECT_THROW(viewer::check_film_file(folder.file("no/a.avi"), format), viewer::FilmError);
   const OtherEncoder encoder("exit 0");
-  EXPECT_THROW(tools::check_film_file(folder.file("a.mp4"), {63, 48, 30}), std::invalid_argument);
+  EXPECT_THROW(viewer::check_film_file(folder.file("a.mp4"), {63, 48, 30}), std::invalid_argument);
   setenv("PATH", "/nowhere", 1);
   try {
-    tools::check_film_file(folder.file("a.mp4"), format);
+    viewer::check_film_file(folder.file("a.mp4"), format);
     FAIL() << "no error";
-  } catch (const tools::FilmError& error) {
+  } catch (const viewer::FilmError& error) {
     EXPECT_THAT(error.what(), HasSubstr("needs the program ffmpeg"));
   }
 }
@@ -124,7 +124,7 @@ TEST(FilmWriter, ReportsTheLastWordsOfAnEncoderThatFails) {
   try {
     write_frames(folder.file("a.mp4"), 400);
     FAIL() << "no error";
-  } catch (const tools::FilmError& error) {
+  } catch (const viewer::FilmError& error) {
     EXPECT_THAT(error.what(), HasSubstr("a.mp4: ffmpeg ended with exit code 3: No space left"));
   }
   EXPECT_EQ(files_in(folder.file("")), 0U);
@@ -136,7 +136,7 @@ TEST(FilmWriter, ReportsAnEncoderThatWasKilled) {
   try {
     write_frames(folder.file("a.webm"), 400);
     FAIL() << "no error";
-  } catch (const tools::FilmError& error) {
+  } catch (const viewer::FilmError& error) {
     EXPECT_THAT(error.what(), HasSubstr("ffmpeg was ended by signal 9"));
   }
   EXPECT_EQ(files_in(folder.file("")), 0U);

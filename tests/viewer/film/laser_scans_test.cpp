@@ -44,7 +44,7 @@ struct Falling {
   sim::LoadedWorld loaded;
   sim::InProcessBus bus;
   sim::World world;
-  tools::LaserScans scans;
+  viewer::LaserScans scans;
   std::map<sim::Time, double> heights_m;
 };
 
@@ -54,14 +54,14 @@ TEST(LaserScans, BeginWhereTheSensorWasWhenItMeasured) {
   falling.run(17);
   const auto scans = falling.scans.scans();
   ASSERT_EQ(scans.size(), 1U);
-  const tools::LaserScans::Scan& scan = *scans.at("robot/laser");
+  const viewer::LaserScans::Scan& scan = *scans.at("robot/laser");
   EXPECT_EQ(scan.at, sim::from_seconds(0.1));
   ASSERT_EQ(scan.rays.size(), 3U);
   const double height_m = falling.heights_m.at(scan.at);
   EXPECT_LT(falling.heights_m.at(falling.world.now()), height_m - 0.05);  // it has fallen on since
   // At -45, 0 and 45 degrees: the face is met at y = -3, 0 and 3.
   for (int i = 0; i < 3; ++i) {
-    const tools::LaserScans::Ray& ray = scan.rays[static_cast<std::size_t>(i)];
+    const viewer::LaserScans::Ray& ray = scan.rays[static_cast<std::size_t>(i)];
     EXPECT_NEAR((ray.from_W - sim::Vector3d(0, 0, height_m)).norm(), 0, 1e-9);
     EXPECT_NEAR((ray.to_W - sim::Vector3d(3, 3 * (i - 1), height_m)).norm(), 0, 1e-6);
   }
@@ -70,11 +70,11 @@ TEST(LaserScans, BeginWhereTheSensorWasWhenItMeasured) {
 TEST(LaserScans, HaveThePoseOfEachColumnOfARotation) {
   Falling falling("type: lidar3d, ring_angles_deg: [0], columns: 40");
   falling.run(45);
-  const tools::LaserScans::Scan& scan = *falling.scans.scans().at("robot/laser");
+  const viewer::LaserScans::Scan& scan = *falling.scans.scans().at("robot/laser");
   EXPECT_EQ(scan.at, sim::from_seconds(0.4));
   // Azimuths from -180 degrees on, 9 degrees and 2.5 ms apart: those within 20 m of the face, |angle| < 81.4 degrees.
   ASSERT_EQ(scan.rays.size(), 19U);
-  for (const tools::LaserScans::Ray& ray : scan.rays) {
+  for (const viewer::LaserScans::Ray& ray : scan.rays) {
     EXPECT_NEAR(ray.to_W.x(), 3, 1e-3);
     EXPECT_NEAR(ray.to_W.z(), ray.from_W.z(), 1e-9);
   }

@@ -30,13 +30,13 @@ struct Drawing {
     return sum;
   }
 
-  tools::SceneView view;
-  tools::RenderedScene rendered;
+  viewer::SceneView view;
+  viewer::RenderedScene rendered;
 };
 
 TEST(OverlayCanvas, DrawsALineThroughTheProjectionsOfItsEnds) {
   Drawing drawing;
-  tools::OverlayCanvas canvas(drawing.rendered, drawing.view);
+  viewer::OverlayCanvas canvas(drawing.rendered, drawing.view);
   // 5 m ahead: 1 m is 20 px.  y is to the left.
   canvas.line({5, 4, 1}, {5, 1, 1}, {{255, 255, 255}, 2});
   EXPECT_EQ(canvas.pixel({5, 4, 1}), sim::Vector2d(20, 30));
@@ -51,8 +51,8 @@ TEST(OverlayCanvas, DrawsALineThroughTheProjectionsOfItsEnds) {
 
 TEST(OverlayCanvas, FadesWhatIsBehindSomething) {
   Drawing drawing;
-  tools::OverlayCanvas canvas(drawing.rendered, drawing.view);
-  tools::Pen pen{{200, 200, 200}, 4};
+  viewer::OverlayCanvas canvas(drawing.rendered, drawing.view);
+  viewer::Pen pen{{200, 200, 200}, 4};
   pen.hidden_opacity = 0.5F;
   // From 5 m, before the surface, to 20 m, behind it: it passes 10 m in between, at column 140.
   canvas.line({5, -1, 0}, {20, -10, 0}, pen);
@@ -61,13 +61,13 @@ TEST(OverlayCanvas, FadesWhatIsBehindSomething) {
   EXPECT_EQ(drawing.level(146, 50), 100);
   // A line on the surface itself is in front.
   Drawing other;
-  tools::OverlayCanvas(other.rendered, other.view).line({10, -2, 0}, {10, -8, 0}, pen);
+  viewer::OverlayCanvas(other.rendered, other.view).line({10, -2, 0}, {10, -8, 0}, pen);
   EXPECT_EQ(other.level(150, 50), 200);
 }
 
 TEST(OverlayCanvas, CutsOffWhatIsBehindTheCamera) {
   Drawing drawing;
-  tools::OverlayCanvas canvas(drawing.rendered, drawing.view);
+  viewer::OverlayCanvas canvas(drawing.rendered, drawing.view);
   canvas.line({-5, 1, 0}, {-1, -1, 0}, {});
   canvas.dot({-1, 0, 0}, {});
   canvas.label({-1, 0, 0}, "behind", {});
@@ -82,14 +82,14 @@ TEST(OverlayCanvas, DrawsTheVisiblePartOfALineThatPassesFarBesideTheCamera) {
   Drawing drawing;
   // At 1000 m ahead it is 30 px left of the middle, at 300 m it leaves the image; 300 m beside the camera the pixels of
   // its end have no bound.
-  tools::OverlayCanvas(drawing.rendered, drawing.view).line({1000, 300, 0}, {-1000, 300, 0}, {{255, 255, 255}, 2});
+  viewer::OverlayCanvas(drawing.rendered, drawing.view).line({1000, 300, 0}, {-1000, 300, 0}, {{255, 255, 255}, 2});
   for (const int column : {2, 35, 68}) EXPECT_GT(drawing.level(column, 50), 100) << column;
   EXPECT_EQ(drawing.level(75, 50), 0);
 }
 
 TEST(OverlayCanvas, DrawsAnEllipseThroughItsAxes) {
   Drawing drawing;
-  tools::OverlayCanvas canvas(drawing.rendered, drawing.view);
+  viewer::OverlayCanvas canvas(drawing.rendered, drawing.view);
   canvas.ellipse({5, 2, 0}, {0, 1.5, 0}, {0, 0, 2}, {{255, 255, 255}, 2});
   for (const sim::Vector3d& p_W : {sim::Vector3d(5, 3.5, 0), sim::Vector3d(5, 0.5, 0), sim::Vector3d(5, 2, 2)}) {
     const auto pixel = canvas.pixel(p_W);
@@ -101,7 +101,7 @@ TEST(OverlayCanvas, DrawsAnEllipseThroughItsAxes) {
 
 TEST(OverlayCanvas, WritesTextBesideItsStart) {
   Drawing drawing;
-  tools::OverlayCanvas canvas(drawing.rendered, drawing.view);
+  viewer::OverlayCanvas canvas(drawing.rendered, drawing.view);
   const float width = canvas.text_width("HHH");
   canvas.text(50, 60, "HHH", {{255, 255, 255}});
   int white = 0;
@@ -131,19 +131,19 @@ TEST(OverlayCanvas, WritesLabelsOfOnePlaceAboveEachOther) {
     return lines;
   };
   Drawing near;
-  tools::OverlayCanvas canvas(near.rendered, near.view);
+  viewer::OverlayCanvas canvas(near.rendered, near.view);
   for (int i = 0; i < 3; ++i) canvas.label({5, 1, 0}, "HHH", {{255, 255, 255}});
   EXPECT_EQ(lines_of(near), 3);
   // Beside each other they stay in one line.
   Drawing apart;
-  tools::OverlayCanvas other(apart.rendered, apart.view);
+  viewer::OverlayCanvas other(apart.rendered, apart.view);
   for (const double y_m : {3, 1}) other.label({5, y_m, 0}, "HHH", {{255, 255, 255}});
   EXPECT_EQ(lines_of(apart), 1);
 }
 
 TEST(StrokeFont, HasAllCharactersOfAsciiWithinItsCell) {
   for (int code = 33; code < 127; ++code) {
-    const std::string_view strokes = tools::strokes_of(static_cast<char>(code));
+    const std::string_view strokes = viewer::strokes_of(static_cast<char>(code));
     EXPECT_FALSE(strokes.empty()) << code;
     std::size_t start = 0;
     while (start < strokes.size()) {
@@ -158,16 +158,16 @@ TEST(StrokeFont, HasAllCharactersOfAsciiWithinItsCell) {
       start = end + 1;
     }
   }
-  EXPECT_EQ(tools::strokes_of('\xE4'), tools::strokes_of('?'));
+  EXPECT_EQ(viewer::strokes_of('\xE4'), viewer::strokes_of('?'));
 }
 
 TEST(Overlays, AreNamedByWords) {
-  const tools::OverlayChoice some = tools::parse_overlays("trails,clock");
+  const viewer::OverlayChoice some = viewer::parse_overlays("trails,clock");
   EXPECT_TRUE(some.trails && some.clock);
   EXPECT_FALSE(some.labels || some.pings || some.ellipses);
-  EXPECT_TRUE(tools::parse_overlays("all").pings);
-  EXPECT_FALSE(tools::parse_overlays("none").any());
-  EXPECT_THROW(tools::parse_overlays("trails,lables"), std::invalid_argument);
+  EXPECT_TRUE(viewer::parse_overlays("all").pings);
+  EXPECT_FALSE(viewer::parse_overlays("none").any());
+  EXPECT_THROW(viewer::parse_overlays("trails,lables"), std::invalid_argument);
 }
 
 }  // namespace

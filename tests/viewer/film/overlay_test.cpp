@@ -24,18 +24,18 @@ TEST(Overlay, ShowsSoundWhereItIsNow) {
   const sim::LoadedWorld loaded = sim::load_world_text("shoal: 1\nname: quiet\nphysics: {step_s: 0.01}\n", "quiet", {});
   sim::InProcessBus bus;
   sim::World world(loaded.config, bus);
-  tools::Overlay::Settings settings;
+  viewer::Overlay::Settings settings;
   settings.choice.pings = true;
-  tools::Overlay overlay(world, settings, {});
+  viewer::Overlay overlay(world, settings, {});
   overlay.add({{100, 0, 0}, 0.01, 0.005, 1500});
   // The silhouette of a sphere of radius r at 100 m, with a focal length of 100 px: 100 r / sqrt(100^2 - r^2), half the
   // width of the line more.
-  tools::SceneView view;
+  viewer::SceneView view;
   view.optics.width = 201, view.optics.height = 101;
   view.optics.focal_px = {100};
   view.optics.principal_px = {100.5, 50.5};
   const auto drawn = [&] {
-    tools::RenderedScene rendered{sim::Image8(201, 101, 3), sim::FloatImage(201, 101, 1)};
+    viewer::RenderedScene rendered{sim::Image8(201, 101, 3), sim::FloatImage(201, 101, 1)};
     std::fill(rendered.depth_m.data.begin(), rendered.depth_m.data.end(), std::numeric_limits<float>::infinity());
     overlay.observe();
     overlay.draw(rendered, view);
@@ -71,17 +71,17 @@ TEST(Overlay, DrawsTheRaysOfALaserFromTheSensorToTheHit) {
       "beam", {});
   sim::InProcessBus bus;
   sim::World world(loaded.config, bus);
-  tools::Overlay::Settings settings;
-  settings.choice = tools::parse_overlays("rays");
-  tools::Overlay overlay(world, settings, {});
+  viewer::Overlay::Settings settings;
+  settings.choice = viewer::parse_overlays("rays");
+  viewer::Overlay overlay(world, settings, {});
   // From 10 m to the south of (2.5, 0, 0) with a focal length of 100 px: 10 px are 1 m to the east.
-  tools::SceneView view;
+  viewer::SceneView view;
   view.optics.width = 201, view.optics.height = 101;
   view.optics.focal_px = {100};
   view.optics.principal_px = {100.5, 50.5};
-  view.X_WS = tools::look_at({2.5, -10, 0}, {2.5, 0, 0});
+  view.X_WS = viewer::look_at({2.5, -10, 0}, {2.5, 0, 0});
   const auto drawn = [&] {
-    tools::RenderedScene rendered{sim::Image8(201, 101, 3), sim::FloatImage(201, 101, 1)};
+    viewer::RenderedScene rendered{sim::Image8(201, 101, 3), sim::FloatImage(201, 101, 1)};
     std::fill(rendered.depth_m.data.begin(), rendered.depth_m.data.end(), std::numeric_limits<float>::infinity());
     overlay.draw(rendered, view);
     return rendered.image;
@@ -105,12 +105,12 @@ TEST(Overlay, DrawsTheRaysOfALaserFromTheSensorToTheHit) {
 }
 
 TEST(Overlay, NamesWhatItCanDraw) {
-  EXPECT_TRUE(tools::parse_overlays("rays").rays);
-  EXPECT_FALSE(tools::parse_overlays("rays").labels);
-  EXPECT_TRUE(tools::parse_overlays("all").rays);
-  EXPECT_TRUE(tools::parse_overlays("rays").any());
-  EXPECT_FALSE(tools::parse_overlays("none").any());
-  EXPECT_THROW(tools::parse_overlays("beams"), std::invalid_argument);
+  EXPECT_TRUE(viewer::parse_overlays("rays").rays);
+  EXPECT_FALSE(viewer::parse_overlays("rays").labels);
+  EXPECT_TRUE(viewer::parse_overlays("all").rays);
+  EXPECT_TRUE(viewer::parse_overlays("rays").any());
+  EXPECT_FALSE(viewer::parse_overlays("none").any());
+  EXPECT_THROW(viewer::parse_overlays("beams"), std::invalid_argument);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ struct Viewed {
   explicit Viewed(const std::string& text, bool everything = false)
       : loaded(sim::load_world_text("shoal: 1\n" + text, "test", {})),
         world(loaded.config, bus),
-        view(tools::overview_of(world, optics(), everything)) {}
+        view(viewer::overview_of(world, optics(), everything)) {}
 
   /// Where a point of the world is in the image; nothing outside of it.
   std::optional<sim::Vector2d> pixel(const sim::Vector3d& p_W) const {
@@ -39,7 +39,7 @@ struct Viewed {
   sim::LoadedWorld loaded;
   sim::InProcessBus bus;
   sim::World world;
-  tools::Overview view;
+  viewer::Overview view;
 };
 
 TEST(Overview, ShowsAllVehiclesWithTheirSizeAndNoMoreThanTheyNeed) {

@@ -42,7 +42,7 @@ class RangingPlot : public testing::Test {
   template <typename Message>
   std::string problem_of(const Message& message, const std::string& channel = "s", std::optional<int> number = {}) {
     try {
-      tools::draw_log(log_of(message), channel, png(), {number, {}});
+      viewer::draw_log(log_of(message), channel, png(), {number, {}});
       return {};
     } catch (const std::runtime_error& error) {
       return error.what();
@@ -102,7 +102,7 @@ TEST_F(RangingPlot, CountsWhoseProductOverflowsAreNoSize) {
 TEST_F(RangingPlot, OfACutLogSaysSo) {
   const std::string log = log_of(side_scan());
   std::filesystem::resize_file(log, std::filesystem::file_size(log) - 3);
-  EXPECT_THAT(tools::draw_log(log, "s", png(), {}).problems,
+  EXPECT_THAT(viewer::draw_log(log, "s", png(), {}).problems,
               testing::ElementsAre(testing::HasSubstr("the last event is cut off")));
   EXPECT_TRUE(drawn());
 }

@@ -40,11 +40,11 @@ struct RestLog {
 };
 
 nlohmann::json distances(const RestLog& a, const RestLog& b) {
-  const tools::LogIndex index_a(a.path), index_b(b.path);
-  tools::LogDistances distances(a.path, index_a, b.path, index_b, a.scene());
+  const viewer::LogIndex index_a(a.path), index_b(b.path);
+  viewer::LogDistances distances(a.path, index_a, b.path, index_b, a.scene());
   while (!distances.compute(std::chrono::steady_clock::now() + std::chrono::milliseconds(1))) {
   }
-  return nlohmann::json::parse(distances.text(tools::first_difference(a.path, index_a, b.path, index_b)));
+  return nlohmann::json::parse(distances.text(viewer::first_difference(a.path, index_a, b.path, index_b)));
 }
 
 /// In the second log the vehicle is put 3 m to the east and 4 m higher after one second.
@@ -57,7 +57,7 @@ TEST(LogDistances, AreThoseOfEachVehicleAndTheFirstDifferenceIsMarked) {
   const nlohmann::json &t_us = json["t_us"], &distance_m = json["vehicles"][0]["distance_m"];
   ASSERT_EQ(t_us.size(), distance_m.size());
   ASSERT_EQ(t_us.size(), 31u);  // ten poses per second
-  EXPECT_LE(t_us.size(), tools::LogDistances::max_times);
+  EXPECT_LE(t_us.size(), viewer::LogDistances::max_times);
   const auto differs_us = json["differs_us"].get<std::int64_t>();
   EXPECT_EQ(differs_us, 1'100'000);  // the first poses after the jump
   for (std::size_t i = 0; i < t_us.size(); ++i)
@@ -76,8 +76,8 @@ TEST(LogDistances, AreUnknownWhereALogLacksTheVehicle) {
 
 TEST(LogDistances, OfADamagedSceneAreNone) {
   const RestLog a;
-  const tools::LogIndex index(a.path);
-  tools::LogDistances none(a.path, index, a.path, index, "{\"vehicles\": [{\"name\": 3}]}");
+  const viewer::LogIndex index(a.path);
+  viewer::LogDistances none(a.path, index, a.path, index, "{\"vehicles\": [{\"name\": 3}]}");
   EXPECT_TRUE(none.compute(std::chrono::steady_clock::now()));
   EXPECT_TRUE(nlohmann::json::parse(none.text(std::nullopt))["vehicles"].empty());
 }

@@ -8,7 +8,7 @@
 namespace {
 
 TEST(EarlierEvents, GoToEachPageThatConnects) {
-  tools::EarlierEvents events;
+  viewer::EarlierEvents events;
   events.add(R"({"who":"a"})");
   EXPECT_FALSE(events.text_for(0));
   EXPECT_TRUE(events.text_for(1));
@@ -22,7 +22,7 @@ TEST(EarlierEvents, GoToEachPageThatConnects) {
 }
 
 TEST(EarlierEvents, AreTheLastThousandAndTheOthersAreCounted) {
-  tools::EarlierEvents events;
+  viewer::EarlierEvents events;
   for (int i = 0; i < 1200; ++i) events.add("{\"number\":" + std::to_string(i) + "}");
   const auto text = events.text_for(1);
   ASSERT_TRUE(text);

@@ -42,7 +42,7 @@ struct Frame {
 };
 
 Frame frame_of(const std::vector<std::byte>& payload) {
-  return Frame(tools::message_frame(shoal::embedded_types(), "rover1.x", payload, 1'234'567));
+  return Frame(viewer::message_frame(shoal::embedded_types(), "rover1.x", payload, 1'234'567));
 }
 
 TEST(MessageFrame, HasTheFieldsOfAMessage) {

@@ -9,13 +9,13 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-using tools::Subscription;
+using viewer::Subscription;
 using Json = nlohmann::json;
 
 std::string error_of_subscribe(const std::string& text) {
   try {
-    tools::parse_subscribe(text);
-  } catch (const tools::PageRequestError& error) {
+    viewer::parse_subscribe(text);
+  } catch (const viewer::PageRequestError& error) {
     return error.what();
   }
   return "";
@@ -25,20 +25,20 @@ std::string error_of_series(const Json& change) {
   Json request{{"id", 1}, {"channel", "a"}, {"field", "b"}, {"from_us", 0}, {"to_us", 10}, {"points", 100}};
   request.merge_patch(change);
   try {
-    tools::parse_series(request.dump());
-  } catch (const tools::PageRequestError& error) {
+    viewer::parse_series(request.dump());
+  } catch (const viewer::PageRequestError& error) {
     return error.what();
   }
   return "";
 }
 
 TEST(PageRequest, ASubscriptionNamesChannelsWithTheirRates) {
-  EXPECT_THAT(tools::parse_subscribe(R"({"channels":[{"name":"a.imu","rate_hz":5},{"name":"b","rate_hz":0.5}]})"),
+  EXPECT_THAT(viewer::parse_subscribe(R"({"channels":[{"name":"a.imu","rate_hz":5},{"name":"b","rate_hz":0.5}]})"),
               ElementsAre(Subscription{"a.imu", 5}, Subscription{"b", 0.5}));
 }
 
 TEST(PageRequest, OfTwoEntriesOfAChannelTheLastCounts) {
-  EXPECT_THAT(tools::parse_subscribe(R"({"channels":[{"name":"a","rate_hz":5},{"name":"a","rate_hz":7}]})"),
+  EXPECT_THAT(viewer::parse_subscribe(R"({"channels":[{"name":"a","rate_hz":5},{"name":"a","rate_hz":7}]})"),
               ElementsAre(Subscription{"a", 7}));
 }
 

@@ -9,7 +9,7 @@
 namespace {
 
 /// A message of 5 bytes and 0.4 s.
-void send(tools::TrafficCounts& counts, const std::string& kind = "message") {
+void send(viewer::TrafficCounts& counts, const std::string& kind = "message") {
   shoal::sim_sound_t sound{};
   sound.source = "a/modem";
   sound.kind = kind;
@@ -19,7 +19,7 @@ void send(tools::TrafficCounts& counts, const std::string& kind = "message") {
 }
 
 TEST(TrafficCounts, SumBytesAndTimeOfEachSenderWithoutNoise) {
-  tools::TrafficCounts counts;
+  viewer::TrafficCounts counts;
   for (int i = 0; i < 3; ++i) send(counts);
   send(counts, "noise");
   ASSERT_EQ(counts.senders().size(), 1u);
@@ -31,14 +31,14 @@ TEST(TrafficCounts, SumBytesAndTimeOfEachSenderWithoutNoise) {
 }
 
 TEST(TrafficHistory, ARewindGivesTheCountsOfThen) {
-  tools::TrafficCounts counts;
-  tools::TrafficHistory history;
+  viewer::TrafficCounts counts;
+  viewer::TrafficHistory history;
   for (int second = 1; second <= 10; ++second) {
     send(counts);
     history.mark(second * 1'000'000, 0, counts);
   }
   EXPECT_TRUE(history.rewind(4'500'000));
-  const tools::TrafficCounts then = history.last();
+  const viewer::TrafficCounts then = history.last();
   EXPECT_EQ(then.channels().at("sim.sound").count, 4);
   EXPECT_EQ(then.senders().at("a/modem").sending_us, 1'600'000);
   EXPECT_EQ(then.sent({"a/modem", "b/modem"}), 4);
@@ -48,15 +48,15 @@ TEST(TrafficHistory, ARewindGivesTheCountsOfThen) {
 /// Each mark has six values: count and bytes of the channel, messages to all, and count, bytes and time of the sender.
 /// So there is room for 100 marks; those of the older half are some 100 to 200 s apart.
 TEST(TrafficHistory, KeepsMarksOfLongAgoFartherApart) {
-  tools::TrafficCounts counts;
-  tools::TrafficHistory history(600);
+  viewer::TrafficCounts counts;
+  viewer::TrafficHistory history(600);
   constexpr int seconds = 5000;
   for (int second = 1; second <= seconds; ++second) {
     send(counts);
     history.mark(second * 1'000'000LL, 0, counts);
   }
   const auto count_at = [&](int second) {
-    tools::TrafficHistory copy = history;
+    viewer::TrafficHistory copy = history;
     copy.rewind(second * 1'000'000LL);
     return copy.last().channels().contains("sim.sound") ? copy.last().channels().at("sim.sound").count : 0;
   };

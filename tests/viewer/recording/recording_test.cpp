@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
-using Kind = tools::Recording::Kind;
+using Kind = viewer::Recording::Kind;
 
 constexpr const char* end_of_script = "</script><script>alert(1)</script><!--";
 
@@ -38,7 +38,7 @@ struct Log {
   const std::string path = folder.file("run.lcm");
 };
 
-std::vector<std::int64_t> state_times(const tools::Recording& recording) {
+std::vector<std::int64_t> state_times(const viewer::Recording& recording) {
   std::vector<std::int64_t> times;
   for (const auto& entry : recording.entries())
     if (entry.kind == Kind::state) times.push_back(entry.time_us);
@@ -46,7 +46,7 @@ std::vector<std::int64_t> state_times(const tools::Recording& recording) {
 }
 
 /// Returns the texts of a kind.
-std::vector<std::string> texts(const tools::Recording& recording, const std::string& op) {
+std::vector<std::string> texts(const viewer::Recording& recording, const std::string& op) {
   std::vector<std::string> found;
   for (const auto& entry : recording.entries())
     if (entry.kind == Kind::text && entry.bytes.find("\"op\":\"" + op + "\"") != std::string::npos)
@@ -73,7 +73,7 @@ struct SmallPage {
 
 TEST(Recording, HasSceneEventsAndAllStatesOfASmallLog) {
   const Log log;
-  const tools::Recording recording(log.path, "test", {});
+  const viewer::Recording recording(log.path, "test", {});
   EXPECT_EQ(recording.start_us(), 0);
   EXPECT_EQ(recording.end_us(), 5'000'000);
   EXPECT_EQ(recording.states(), recording.states_of_log());
@@ -89,7 +89,7 @@ TEST(Recording, HasSceneEventsAndAllStatesOfASmallLog) {
 
 TEST(Recording, KeepsFirstAndLastStateWhenItIsThinned) {
   const Log log;
-  tools::Recording recording(log.path, "test", {});
+  viewer::Recording recording(log.path, "test", {});
   for (std::size_t before = recording.states(); recording.thin(); before = recording.states()) {
     EXPECT_LT(recording.states(), before);
     const auto times = state_times(recording);
@@ -102,9 +102,9 @@ TEST(Recording, KeepsFirstAndLastStateWhenItIsThinned) {
 
 TEST(Recording, NeedsBoundedMemoryForALongLog) {
   const Log log;
-  tools::Recording::Limits limits;
+  viewer::Recording::Limits limits;
   limits.state_bytes = 10 * 52;  // a head of 32 bytes and one body of 20
-  const tools::Recording recording(log.path, "test", limits);
+  const viewer::Recording recording(log.path, "test", limits);
   EXPECT_LE(recording.states(), 11u);
   EXPECT_GE(recording.states(), 5u);
   const auto times = state_times(recording);
@@ -115,7 +115,7 @@ TEST(Recording, NeedsBoundedMemoryForALongLog) {
 
 TEST(Recording, WritesEntriesWithHeads) {
   const Log log;
-  const tools::Recording recording(log.path, "test", {});
+  const viewer::Recording recording(log.path, "test", {});
   const std::string bytes = recording.to_bytes();
   std::size_t at = 0, number = 0;
   for (; at < bytes.size(); ++number) {
@@ -132,7 +132,7 @@ TEST(Recording, WritesEntriesWithHeads) {
 
 TEST(RecordingPage, HasTheWholePageAndNoNameCanEndItsData) {
   const Log log;
-  const tools::RecordingPage page = tools::make_recording_page(log.path, "test");
+  const viewer::RecordingPage page = viewer::make_recording_page(log.path, "test");
   EXPECT_THAT(page.html, Not(HasSubstr("alert(1)")));
   EXPECT_THAT(page.html, Not(HasSubstr("src=")));
   EXPECT_THAT(page.html, Not(HasSubstr("<link rel=\"stylesheet\"")));
@@ -143,13 +143,13 @@ TEST(RecordingPage, HasTheWholePageAndNoNameCanEndItsData) {
 
 TEST(RecordingPage, StaysBelowItsLimitByFewerStates) {
   const Log log;
-  const std::size_t whole = tools::make_recording_page(log.path, "test").html.size();
-  const tools::RecordingPage page = tools::make_recording_page(log.path, "test", whole - 200);
+  const std::size_t whole = viewer::make_recording_page(log.path, "test").html.size();
+  const viewer::RecordingPage page = viewer::make_recording_page(log.path, "test", whole - 200);
   EXPECT_LE(page.html.size(), whole - 200);
   EXPECT_LT(page.states, page.states_of_log);
   EXPECT_THAT(page.to_text(), HasSubstr(" of the "));
   try {
-    tools::make_recording_page(log.path, "test", 1000);
+    viewer::make_recording_page(log.path, "test", 1000);
     FAIL();
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), HasSubstr("run.lcm: scene and meshes alone make a page of"));
@@ -157,18 +157,18 @@ TEST(RecordingPage, StaysBelowItsLimitByFewerStates) {
 }
 
 TEST(RecordingPage, StylesAndLoaderStandInIt) {
-  const std::string html = tools::recording_html(SmallPage().files(), "data");
+  const std::string html = viewer::recording_html(SmallPage().files(), "data");
   EXPECT_THAT(html, HasSubstr("<style>\np { margin: 0 }\n</style>"));
   EXPECT_THAT(html, HasSubstr("<script>\nstart();\n</script>"));
   EXPECT_THAT(html, HasSubstr("id=\"recording\">ZGF0YQ==</script>"));
 }
 
 TEST(RecordingPage, SaysWhatThePageLacks) {
-  EXPECT_THROW(tools::recording_html({}, ""), std::runtime_error);
-  EXPECT_THROW(tools::recording_html(SmallPage("const a = '</script>';").files(), ""), std::runtime_error);
+  EXPECT_THROW(viewer::recording_html({}, ""), std::runtime_error);
+  EXPECT_THROW(viewer::recording_html(SmallPage("const a = '</script>';").files(), ""), std::runtime_error);
   SmallPage page;
   page.index = "<html></html>";
-  EXPECT_THROW(tools::recording_html(page.files(), ""), std::runtime_error);
+  EXPECT_THROW(viewer::recording_html(page.files(), ""), std::runtime_error);
 }
 
 }  // namespace

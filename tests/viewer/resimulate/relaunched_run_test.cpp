@@ -19,7 +19,7 @@ namespace {
 using testing::HasSubstr;
 
 /// Figures with all digits; a figure without data equals itself.
-std::map<std::string, std::string> texts_of(const tools::Figures& figures) {
+std::map<std::string, std::string> texts_of(const experiment::Figures& figures) {
   std::map<std::string, std::string> texts;
   for (const auto& [name, value] : figures) texts[name] = fmt::format("{}", value);
   return texts;
@@ -34,28 +34,28 @@ class RelaunchedRun : public testing::Test {
     sim::LoadOptions load;
     load.encode_message = shoal::encode_own_message;
     sim::LoadedWorld loaded = sim::load_world(test_support::source_path("worlds/segway.yaml"), load);
-    tools::read_programs(loaded, {});
-    tools::RunOptions options;
+    experiment::read_programs(loaded, {});
+    experiment::RunOptions options;
     options.launch = options.quiet = true;
     options.lcm_url = test_support::own_url();
     options.record = log;
     options.speed = 0;
     options.duration_s = 0.005 * steps;
-    recorded = tools::run_world(loaded, options);
+    recorded = experiment::run_world(loaded, options);
     ASSERT_EQ(recorded.steps, steps) << recorded.error;
   }
-  std::unique_ptr<tools::ResimulatedRun> run_again(bool launch) const {
-    tools::ResimulatedRun::Options options;
+  std::unique_ptr<viewer::ResimulatedRun> run_again(bool launch) const {
+    viewer::ResimulatedRun::Options options;
     options.log = log;
     options.view.port = 0;
     options.launch = launch;
     options.lcm_url = test_support::own_url();
-    auto run = std::make_unique<tools::ResimulatedRun>(options, tools::short_version());
+    auto run = std::make_unique<viewer::ResimulatedRun>(options, experiment::short_version());
     run->execute("speed", 0, "");
     return run;
   }
   /// Advances until the step is there on a branch; a branch begins when its programs have followed the record.
-  static void advance_to(tools::ResimulatedRun& run, std::int64_t step, std::int32_t branch) {
+  static void advance_to(viewer::ResimulatedRun& run, std::int64_t step, std::int32_t branch) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
     while ((run.world().step_number() != step || run.control().branch != branch) &&
            std::chrono::steady_clock::now() < end)
@@ -66,7 +66,7 @@ class RelaunchedRun : public testing::Test {
 
   test_support::ScratchFolder folder;
   std::string log = folder.file("segway.lcm");
-  tools::Summary recorded;
+  experiment::Summary recorded;
 };
 
 TEST_F(RelaunchedRun, ABranchWithItsProgramsEndsAsTheRunDid) {

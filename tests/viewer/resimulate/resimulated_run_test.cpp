@@ -15,19 +15,19 @@ class ResimulatedRunTest : public test::ReplayTest {
  protected:
   ResimulatedRunTest() { record(test::driven_world()); }
 
-  std::unique_ptr<tools::ResimulatedRun> run_again() const {
-    tools::ResimulatedRun::Options options;
+  std::unique_ptr<viewer::ResimulatedRun> run_again() const {
+    viewer::ResimulatedRun::Options options;
     options.log = log;
     options.view.port = 0;
-    auto run = std::make_unique<tools::ResimulatedRun>(options, tools::short_version());
+    auto run = std::make_unique<viewer::ResimulatedRun>(options, experiment::short_version());
     run->execute("speed", 0, "");
     return run;
   }
-  static void advance_to(tools::ResimulatedRun& run, std::int64_t step) {
+  static void advance_to(viewer::ResimulatedRun& run, std::int64_t step) {
     for (int i = 0; i < 10'000 && run.world().step_number() != step; ++i) run.advance();
     ASSERT_EQ(run.world().step_number(), step);
   }
-  static std::string refusal(tools::ResimulatedRun& run, const std::string& command, double value,
+  static std::string refusal(viewer::ResimulatedRun& run, const std::string& command, double value,
                              const std::string& text = "") {
     try {
       return "did it: " + run.execute(command, value, text);

@@ -47,7 +47,7 @@ class ServedBus {
 
  private:
   std::mutex mutex_;
-  tools::BusView view_;
+  viewer::BusView view_;
   std::atomic<bool> end_ = false;
   std::thread thread_;
 };

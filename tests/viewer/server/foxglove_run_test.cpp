@@ -86,11 +86,11 @@ class FoxgloveRun {
     options_.record = record;
     view_.port = 0;
     view_.foxglove_control = true;
-    options_.page = tools::run_page(view_);
+    options_.page = viewer::run_page(view_);
     std::promise<std::string> url;
     auto opened = url.get_future();
     view_.opened = [&url](const std::string& text) { url.set_value(text); };
-    thread_ = std::thread([this] { summary = tools::run_world(loaded_, options_); });
+    thread_ = std::thread([this] { summary = experiment::run_world(loaded_, options_); });
     const std::string address = opened.get();
     port = static_cast<std::uint16_t>(std::stoi(address.substr(address.rfind(':') + 1)));
     client = std::make_unique<FoxgloveClient>(port);
@@ -102,14 +102,14 @@ class FoxgloveRun {
     thread_.join();
   }
 
-  tools::Summary summary;
+  experiment::Summary summary;
   std::uint16_t port = 0;
   std::unique_ptr<FoxgloveClient> client;
 
  private:
   sim::LoadedWorld loaded_;
-  tools::RunOptions options_;
-  tools::ViewOptions view_;
+  experiment::RunOptions options_;
+  experiment::ViewOptions view_;
   std::thread thread_;
 };
 
@@ -140,10 +140,10 @@ TEST(FoxgloveRun, ThatWasPausedSteppedFaultedAndAddedToReplaysEqual) {
   succeeds(pause_service, Json::object());
   run.end();
   EXPECT_EQ(run.summary.exit_code, 0) << run.summary.error;
-  tools::ReplayOptions options;
+  experiment::ReplayOptions options;
   options.log = folder.file("run.lcm");
   options.quiet = true;
-  const tools::ReplayOutcome replayed = tools::replay(options);
+  const experiment::ReplayOutcome replayed = experiment::replay(options);
   EXPECT_EQ(replayed.exit_code(), 0);
   EXPECT_EQ(replayed.steps, 400);
   EXPECT_GT(replayed.hashes, 0u);

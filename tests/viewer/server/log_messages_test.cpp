@@ -125,13 +125,13 @@ TEST(LogView, ASeriesOfAFieldThatIsMissingSaysSo) {
 
 TEST(LogSeries, WhatCannotBeReadInTimeIsAnError) {
   const test::TrafficLog log;
-  const tools::LogIndex index(log.path);
+  const viewer::LogIndex index(log.path);
   bridges::EventLogReader reader(log.path);
-  const tools::SeriesRequest request{"1", "ball.pose", "pos[2]", 0, 10'000'000, 100};
+  const viewer::SeriesRequest request{"1", "ball.pose", "pos[2]", 0, 10'000'000, 100};
   try {
-    tools::read_series(reader, index, request, std::chrono::steady_clock::time_point());
+    viewer::read_series(reader, index, request, std::chrono::steady_clock::time_point());
     FAIL();
-  } catch (const tools::PageRequestError& error) {
+  } catch (const viewer::PageRequestError& error) {
     EXPECT_THAT(error.what(), HasSubstr("cannot be read within a second; ask for a shorter range"));
   }
 }

@@ -97,7 +97,7 @@ struct TrafficLog {
 /// A page of the log, served in another thread.
 struct LogPage {
   template <typename AnyLog>
-  explicit LogPage(const AnyLog& log, const std::function<void(tools::LogView&)>& prepare = {})
+  explicit LogPage(const AnyLog& log, const std::function<void(viewer::LogView&)>& prepare = {})
       : index(log.path), view(log.path, index, options(), "test"), client(port()) {
     if (prepare) prepare(view);
     thread = std::thread([this] {
@@ -114,8 +114,8 @@ struct LogPage {
     end = true;
     thread.join();
   }
-  static tools::ViewOptions options() {
-    tools::ViewOptions options;
+  static experiment::ViewOptions options() {
+    experiment::ViewOptions options;
     options.port = 0;
     return options;
   }
@@ -193,8 +193,8 @@ struct LogPage {
     }
   }
 
-  tools::LogIndex index;
-  tools::LogView view;
+  viewer::LogIndex index;
+  viewer::LogView view;
   web_test::Client client;
   const std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
   std::atomic<bool> end = false;

@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 TEST(LogIndex, KnowsTheSpanAndTheEventsOfALog) {
   const test::FallLog log;
-  const tools::LogIndex index(log.path);
+  const viewer::LogIndex index(log.path);
   EXPECT_EQ(index.start_us(), 0);
   EXPECT_EQ(index.end_us(), 3'000'000);
   EXPECT_EQ(index.world(), "fall");
@@ -33,7 +33,7 @@ TEST(LogIndex, SaysWhatALogLacks) {
   const std::string path = folder.file("empty.lcm");
   { test::RecordedRun run("shoal: 1\n", path); }
   try {
-    const tools::LogIndex index(path);
+    const viewer::LogIndex index(path);
     FAIL();
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), HasSubstr("empty.lcm: has neither sim.scene nor sim.bodies"));
@@ -100,14 +100,14 @@ TEST(LogView, ASeekShowsThePosesOfThatTime) {
 /// In the second log the ball is put 50 m higher after two seconds.
 TEST(LogView, ShowsASecondLogAtTheSameTimeAndWhereItDiffers) {
   const test::FallLog log, other(", {name: lift, at: 2, do: [{move: {name: ball, position_m: [1, 2, 150]}}]}");
-  const tools::LogIndex a(log.path), b(other.path);
-  EXPECT_FALSE(tools::first_difference(log.path, a, log.path, a));
-  const auto difference = tools::first_difference(log.path, a, other.path, b);
+  const viewer::LogIndex a(log.path), b(other.path);
+  EXPECT_FALSE(viewer::first_difference(log.path, a, log.path, a));
+  const auto difference = viewer::first_difference(log.path, a, other.path, b);
   ASSERT_TRUE(difference);
   EXPECT_EQ(difference->by, "poses");
   EXPECT_GE(difference->time_us, 2'000'000);
   EXPECT_LE(difference->time_us, 2'100'000);
-  test::LogPage page(log, [&](tools::LogView& view) { view.compare_with(other.path, b, difference); });
+  test::LogPage page(log, [&](viewer::LogView& view) { view.compare_with(other.path, b, difference); });
   page.pause();
   const auto look = [&](int branch, std::int64_t time_us) {
     page.client.send_json({{"op", "look"}, {"branch", branch}, {"time_us", time_us}});
@@ -125,8 +125,8 @@ TEST(LogView, ShowsASecondLogAtTheSameTimeAndWhereItDiffers) {
 /// Of the first log they come as it is played, of the second one with its poses.
 TEST(LogView, SendsTheEstimatesOfBothLogs) {
   const test::FallLog log("", 1.5), other("", 3);
-  const tools::LogIndex b(other.path);
-  test::LogPage page(log, [&](tools::LogView& view) { view.compare_with(other.path, b, std::nullopt); });
+  const viewer::LogIndex b(other.path);
+  test::LogPage page(log, [&](viewer::LogView& view) { view.compare_with(other.path, b, std::nullopt); });
   page.pause();
   page.seek(2'000'000);
   const auto own = page.text_when("estimates", [](const web_test::Json& text) {
@@ -171,7 +171,7 @@ class LogDifference : public testing::Test {
 
 TEST_F(LogDifference, IsTheFirstHashThatDiffers) {
   const std::string a = record("a.lcm", 1), b = record("b.lcm", 1, 52);
-  const auto difference = tools::first_difference(a, tools::LogIndex(a), b, tools::LogIndex(b));
+  const auto difference = viewer::first_difference(a, viewer::LogIndex(a), b, viewer::LogIndex(b));
   ASSERT_TRUE(difference);
   EXPECT_EQ(difference->by, "sim.hash");
   EXPECT_EQ(difference->step, 60);
@@ -180,15 +180,15 @@ TEST_F(LogDifference, IsTheFirstHashThatDiffers) {
 
 TEST_F(LogDifference, IsThatOfAReplay) {
   const std::string a = record("a.lcm", 1), b = record("b.lcm", 2);
-  const auto difference = tools::first_difference(a, tools::LogIndex(a), b, tools::LogIndex(b));
+  const auto difference = viewer::first_difference(a, viewer::LogIndex(a), b, viewer::LogIndex(b));
   ASSERT_TRUE(difference);
   // The log of b in the world of a.
-  tools::ReplayOptions options;
+  experiment::ReplayOptions options;
   options.log = b;
   options.world = folder_.file("a.yaml");
   std::ofstream(options.world) << world(1);
   options.quiet = true;
-  const tools::ReplayOutcome replayed = tools::replay(options);
+  const experiment::ReplayOutcome replayed = experiment::replay(options);
   ASSERT_TRUE(replayed.first);
   EXPECT_EQ(replayed.first->step, *difference->step);
 }

@@ -21,8 +21,8 @@ using testing::Not;
 
 std::string refusal(const std::string& text) {
   try {
-    tools::PageDrive::read(text);
-  } catch (const tools::DriveError& error) {
+    viewer::PageDrive::read(text);
+  } catch (const experiment::DriveError& error) {
     return error.what();
   }
   return "";
@@ -32,13 +32,13 @@ std::string refusal(const std::string& text) {
 class PageDriveTest : public test::ReplayTest {
  protected:
   /// Positions of the controls of a page.
-  static tools::PageDrive::Request ahead(double forward) { return {"r1", "twist", {{"forward", forward}}}; }
+  static viewer::PageDrive::Request ahead(double forward) { return {"r1", "twist", {{"forward", forward}}}; }
 
-  std::string refused(int client, const tools::PageDrive::Request& request, const sim::World& world,
+  std::string refused(int client, const viewer::PageDrive::Request& request, const sim::World& world,
                       std::chrono::milliseconds at) {
     try {
       drive.take(client, request, world, start + at);
-    } catch (const tools::DriveError& error) {
+    } catch (const experiment::DriveError& error) {
       return error.what();
     }
     return "";
@@ -54,8 +54,8 @@ class PageDriveTest : public test::ReplayTest {
     return all;
   }
 
-  const tools::PageDrive::Clock::time_point start{1h};
-  tools::PageDrive drive{tools::read_drive_profile("")};
+  const viewer::PageDrive::Clock::time_point start{1h};
+  viewer::PageDrive drive{experiment::read_drive_profile("")};
 };
 
 TEST_F(PageDriveTest, StopsAFifthOfASecondAfterTheLastMessage) {
@@ -137,14 +137,14 @@ TEST_F(PageDriveTest, ADrivenRunReplaysEqual) {
     x_m = run.world.find_vehicle("r1")->X_WV().translation().x();
   }
   EXPECT_GT(x_m, 0.2);
-  const tools::ReplayOutcome outcome = again();
+  const experiment::ReplayOutcome outcome = again();
   EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
   EXPECT_EQ(outcome.steps, test::steps);
 }
 
 TEST_F(PageDriveTest, FormsTellWhatTheWorldTakes) {
   const test::RecordedRun run(test::driven_world("events: [{name: storm, do: [{log: now}]}]\n"), log);
-  const Json forms = Json::parse(tools::forms_text(run.world, drive.profile()));
+  const Json forms = Json::parse(viewer::forms_text(run.world, drive.profile()));
   EXPECT_EQ(forms["op"], "forms");
   EXPECT_EQ(forms["events"], Json({"storm"}));
   EXPECT_EQ(forms["objects"], Json({"crate", "ground"}));
@@ -160,7 +160,7 @@ TEST_F(PageDriveTest, FormsTellWhatTheWorldTakes) {
 
 TEST_F(PageDriveTest, FormsOfferToDriveTheSegwayThroughItsProgram) {
   const test::RecordedRun run("shoal: 1\nvehicles: [{name: segway1, file: segway_rmp.yaml}]\n", log);
-  const Json forms = Json::parse(tools::forms_text(run.world, drive.profile()));
+  const Json forms = Json::parse(viewer::forms_text(run.world, drive.profile()));
   EXPECT_EQ(forms["drives"]["segway1"][0], Json({{"kind", "twist"}, {"axes", {"forward", "turn"}}}));
   drive.take(1, {"segway1", "", {{"forward", 1}}}, run.world, start);
   std::vector<std::string> channels;

@@ -37,11 +37,11 @@ class PageRun {
     options_.speed = 0;
     options_.record = record;
     view_.port = 0;
-    options_.page = tools::run_page(view_);
+    options_.page = viewer::run_page(view_);
     std::promise<std::string> address;
     auto opened = address.get_future();
     view_.opened = [&address](const std::string& text) { address.set_value(text); };
-    thread_ = std::thread([this] { summary = tools::run_world(loaded_, options_); });
+    thread_ = std::thread([this] { summary = experiment::run_world(loaded_, options_); });
     url = opened.get();
     page = std::make_unique<test::ViewPage>(url);
   }
@@ -58,24 +58,24 @@ class PageRun {
     thread_.join();
   }
 
-  tools::Summary summary;
+  experiment::Summary summary;
   std::string url;
   std::unique_ptr<test::ViewPage> page;
 
  private:
   sim::LoadedWorld loaded_;
-  tools::RunOptions options_;
-  tools::ViewOptions view_;
+  experiment::RunOptions options_;
+  experiment::ViewOptions view_;
   std::thread thread_;
 };
 
-tools::Summary plain_run() {
+experiment::Summary plain_run() {
   const auto loaded = sim::load_world_text(falling, "worlds/test.yaml", test::LoadedTestWorld::with_messages({}));
-  tools::RunOptions options;
+  experiment::RunOptions options;
   options.bus = "none";
   options.quiet = true;
   options.speed = 0;
-  return tools::run_world(loaded, options);
+  return experiment::run_world(loaded, options);
 }
 
 TEST(PageRun, SaysWhyTheRunHasEndedAndWhereItsRecordIs) {
@@ -132,14 +132,14 @@ TEST(PageRun, ARewindFromThePageGivesTheRunThatNeverWentBackAndReplaysEqual) {
   EXPECT_EQ(run.page->reply()["ok"], true);
   run.page->text("status", [](const web_test::Json& status) { return status["step"] == 100 && status["branch"] == 1; });
   run.end();
-  const tools::Summary plain = plain_run();
+  const experiment::Summary plain = plain_run();
   EXPECT_EQ(run.summary.run_hash, plain.run_hash);
   EXPECT_EQ(run.summary.state_hash, plain.state_hash);
   for (const char* record : {"run.lcm", "run.branch1.lcm"}) {
-    tools::ReplayOptions options;
+    experiment::ReplayOptions options;
     options.log = folder.file(record);
     options.quiet = true;
-    EXPECT_EQ(tools::replay(options).exit_code(), 0) << record;
+    EXPECT_EQ(experiment::replay(options).exit_code(), 0) << record;
   }
 }
 
@@ -199,10 +199,10 @@ TEST(PageRun, ListsItsBranchesAndWhereTheyDiffer) {
   EXPECT_GT(run.page->look(2e6, 1).z_m, 250);
   EXPECT_NEAR(run.page->look(1e6, 1).z_m, height_m(1), 1e-4) << "the past that they share";
   run.end();
-  tools::ReplayOptions options;
+  experiment::ReplayOptions options;
   options.log = folder.file("run.branch1.lcm");
   options.quiet = true;
-  EXPECT_EQ(tools::replay(options).exit_code(), 0) << "a run steered by a page";
+  EXPECT_EQ(experiment::replay(options).exit_code(), 0) << "a run steered by a page";
 }
 
 /// Returns the count of a channel, of the next counts at a time.

@@ -7,7 +7,7 @@
 
 namespace {
 
-using tools::PoseHistory;
+using viewer::PoseHistory;
 
 sim::Bytes bodies(int value, std::size_t size = 20) {
   sim::Bytes bytes(size);

@@ -51,8 +51,8 @@ namespace {
 const std::string measured_world =
     test::rover_world("        - {name: lidar, type: lidar}\n", "", "", "name: small\nrun: {seed: 7}\n");
 
-tools::ViewOptions any_port() {
-  tools::ViewOptions options;
+experiment::ViewOptions any_port() {
+  experiment::ViewOptions options;
   options.port = 0;
   return options;
 }
@@ -60,8 +60,8 @@ tools::ViewOptions any_port() {
 TEST(RunViewCost, WithoutAPageOnlyAStepWhosePosesAreKeptAllocates) {
   if (!counts_memory) GTEST_SKIP() << "the sanitizer allocates";
   test::TestWorld test(measured_world);
-  tools::RunView page(any_port(), "test");
-  tools::TapBus bus(test.bus, [&](std::string_view channel, std::span<const std::byte> payload, sim::Time at) {
+  viewer::RunView page(any_port(), "test");
+  experiment::TapBus bus(test.bus, [&](std::string_view channel, std::span<const std::byte> payload, sim::Time at) {
     page.message(channel, payload, at);
   });
   bridges::ViewPublisher publisher(bus, test.world, {}, [] { return true; });
@@ -77,7 +77,7 @@ TEST(RunViewCost, WithoutAPageOnlyAStepWhosePosesAreKeptAllocates) {
     page.message("r1.lidar", report, test.world.now());
     page.after_step(test.world, publisher, control);
     page.serve(test.world, publisher, control, "",
-               [](const std::string&, double, const std::string&) { return tools::RunView::Answer{}; });
+               [](const std::string&, double, const std::string&) { return viewer::RunView::Answer{}; });
     if (test.world.now() < begin) continue;  // buffers get their sizes
     ++steps;
     steps_that_allocate += allocations > before;
@@ -99,26 +99,26 @@ double peak_MB(const Work& work) {
   throw std::runtime_error("/proc/self/status has no VmHWM");
 }
 
-tools::RunOptions fast_run(const tools::ViewOptions& view) {
-  tools::RunOptions options;
+experiment::RunOptions fast_run(const experiment::ViewOptions& view) {
+  experiment::RunOptions options;
   options.bus = "none";
   options.quiet = true;
   options.keys = false;
   options.speed = 0;
   options.rewind_s = 0;
   options.duration_s = 30;
-  options.page = tools::run_page(view);
+  options.page = viewer::run_page(view);
   return options;
 }
 
 TEST(RunViewCost, APageThatDoesNotReadTakesAtMostEightMegabytesAndChangesNothing) {
   const sim::LoadedWorld loaded = sim::load_world_text(measured_world, "small.yaml");
   // A first run, so that both that are compared find the same memory in the process.
-  tools::ViewOptions view = any_port();
-  tools::run_world(loaded, fast_run(view));
-  tools::Summary alone, watched;
-  const double alone_MB = peak_MB([&] { alone = tools::run_world(loaded, fast_run(view)); });
-  const tools::RunOptions options = fast_run(view);
+  experiment::ViewOptions view = any_port();
+  experiment::run_world(loaded, fast_run(view));
+  experiment::Summary alone, watched;
+  const double alone_MB = peak_MB([&] { alone = experiment::run_world(loaded, fast_run(view)); });
+  const experiment::RunOptions options = fast_run(view);
   std::unique_ptr<web_test::Client> frozen;
   view.opened = [&](const std::string& url) {
     frozen = std::make_unique<web_test::Client>(static_cast<std::uint16_t>(std::stoi(url.substr(url.rfind(':') + 1))),
@@ -127,7 +127,7 @@ TEST(RunViewCost, APageThatDoesNotReadTakesAtMostEightMegabytesAndChangesNothing
     frozen->send_json({{"op", "hello"}});
     frozen->send_json({{"op", "subscribe"}, {"channels", {{{"name", "r1.lidar"}, {"rate_hz", 30}}}}});
   };
-  const double watched_MB = peak_MB([&] { watched = tools::run_world(loaded, options); });
+  const double watched_MB = peak_MB([&] { watched = experiment::run_world(loaded, options); });
   RecordProperty("frozen_page_MB", std::to_string(watched_MB - alone_MB));
   if (counts_memory) {
     EXPECT_LE(watched_MB - alone_MB, 8);

@@ -25,8 +25,8 @@ sim::LoadedWorld rover() {
       "small.yaml");
 }
 
-tools::RunOptions quiet_run() {
-  tools::RunOptions options;
+experiment::RunOptions quiet_run() {
+  experiment::RunOptions options;
   options.bus = "none";
   options.quiet = true;
   options.keys = false;
@@ -75,14 +75,14 @@ Seen watch(std::uint16_t port, const std::string& channel) {
 }
 
 TEST(RunView, ASubscriptionDoesNotChangeTheRun) {
-  const tools::Summary alone = tools::run_world(rover(), quiet_run());
-  tools::RunOptions options = quiet_run();
-  const tools::ViewOptions view{.port = static_cast<std::uint16_t>(test_support::own_port()), .port_tries = 1};
-  options.page = tools::run_page(view);
+  const experiment::Summary alone = experiment::run_world(rover(), quiet_run());
+  experiment::RunOptions options = quiet_run();
+  const experiment::ViewOptions view{.port = static_cast<std::uint16_t>(test_support::own_port()), .port_tries = 1};
+  options.page = viewer::run_page(view);
   Seen seen;
   std::thread page([&] { seen = watch(view.port, "r1.lidar"); });
   const auto begin = std::chrono::steady_clock::now();
-  const tools::Summary watched = tools::run_world(rover(), options);
+  const experiment::Summary watched = experiment::run_world(rover(), options);
   page.join();
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   EXPECT_GT(seen.messages, 2);

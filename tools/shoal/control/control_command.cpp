@@ -66,7 +66,7 @@ int control(const ControlArguments& arguments) {
                                    "'; did you mean '" + meant + "'?");
   // Send the request and print the reply.
   const std::string text = text_of(arguments.text);
-  catch_signals(false);
+  experiment::catch_signals(false);
   ControlSession session({arguments.client, arguments.lcm_url, arguments.run, arguments.timeout_s});
   const auto reply = session.send_request(arguments.command, text, arguments.value);
   if (!reply) {
@@ -80,8 +80,8 @@ int control(const ControlArguments& arguments) {
               << (arguments.lcm_url.empty() ? "" : " --lcm-url '" + arguments.lcm_url + "'")
               << (arguments.run.empty() ? "" : " --run '" + arguments.run + "'") << "`\n";
   // A vehicle that depends on its client remains as long as the client reports that it is alive.
-  while (arguments.hold_here && caught_signal() == 0) {
-    if (!session.send_request("alive", "", 0) && caught_signal() == 0) return exit_timeout;
+  while (arguments.hold_here && experiment::caught_signal() == 0) {
+    if (!session.send_request("alive", "", 0) && experiment::caught_signal() == 0) return exit_timeout;
     std::this_thread::sleep_for(500ms);
   }
   if (arguments.hold_here) session.send_request("leave", "", 0);

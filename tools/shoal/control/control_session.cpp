@@ -30,7 +30,7 @@ std::optional<shoal::sim_control_reply_t> ControlSession::send_request(const std
   send(request, command, text, value);
   // Requests are answered in order.  When the query, which changes nothing, is answered and the request is not, the
   // simulator has not received the request.
-  while (Clock::now() < deadline && caught_signal() == 0) {
+  while (Clock::now() < deadline && experiment::caught_signal() == 0) {
     auto reply = await_reply(request, question, std::min<Clock::time_point>(deadline, Clock::now() + 1s), audit_entry);
     if (!reply) {
       send(question, "alive", "", 0);
@@ -62,7 +62,7 @@ void ControlSession::send(std::int32_t id, const std::string& command, const std
 std::optional<shoal::sim_control_reply_t> ControlSession::await_reply(std::int32_t id, std::int32_t other_id,
                                                                       Clock::time_point deadline,
                                                                       bridges::WaitWarning& audit_entry) {
-  while (Clock::now() < deadline && caught_signal() == 0) {
+  while (Clock::now() < deadline && experiment::caught_signal() == 0) {
     audit_entry.look();
     const auto message = lcm_.next(50ms);
     if (!message || message->channel != "sim.control.reply") continue;

@@ -30,7 +30,7 @@ namespace tools {
 namespace {
 
 using namespace std::chrono_literals;
-using Clock = Driver::Clock;
+using Clock = experiment::Driver::Clock;
 
 struct DriveArguments {
   std::string vehicle;
@@ -52,7 +52,7 @@ class Controls {
   virtual bool read(Clock::time_point now) = 0;
   /// Returns whether the driver gives a sign of life now.
   virtual bool holds() = 0;
-  virtual DriveValues values() const = 0;
+  virtual experiment::DriveValues values() const = 0;
   /// Returns, once, whether the next joint is to be selected.
   virtual bool take_next_joint() = 0;
 };
@@ -60,45 +60,45 @@ class Controls {
 /// Keys of the terminal.  A terminal reports no release of a key, only its repetitions: each byte is a sign of life.
 class KeyControls final : public Controls {
  public:
-  explicit KeyControls(const DriveProfile& profile) : keys_(profile.keys) {}
+  explicit KeyControls(const experiment::DriveProfile& profile) : keys_(profile.keys) {}
   bool read(Clock::time_point) override {
     while (const auto byte = terminal_.next()) {
       if (*byte == 4) return false;  // Ctrl-D
       const auto event = events_.next(*byte);
       if (!event || (event->ctrl && event->key.size() == 1)) continue;  // Ctrl and a letter
-      const DriveKeys::Effect effect = keys_.press(event->key);
-      holds_ = holds_ || effect == DriveKeys::Effect::sign_of_life;
-      next_joint_ = next_joint_ || effect == DriveKeys::Effect::next_joint;
+      const experiment::DriveKeys::Effect effect = keys_.press(event->key);
+      holds_ = holds_ || effect == experiment::DriveKeys::Effect::sign_of_life;
+      next_joint_ = next_joint_ || effect == experiment::DriveKeys::Effect::next_joint;
     }
     return isatty(STDIN_FILENO) != 0;
   }
   bool holds() override { return std::exchange(holds_, false); }
-  DriveValues values() const override { return keys_.values(); }
+  experiment::DriveValues values() const override { return keys_.values(); }
   bool take_next_joint() override {
     if (next_joint_) keys_.centre();
     return std::exchange(next_joint_, false);
   }
 
  private:
-  TerminalKeys terminal_;
-  KeyEvents events_;
-  DriveKeys keys_;
+  experiment::TerminalKeys terminal_;
+  experiment::KeyEvents events_;
+  experiment::DriveKeys keys_;
   bool holds_ = false, next_joint_ = false;
 };
 
 /// Gamepad, or a file of its events.
 class PadControls final : public Controls {
  public:
-  PadControls(const DriveArguments& arguments, const DriveProfile& profile) : gamepad_(profile.gamepad) {
+  PadControls(const DriveArguments& arguments, const experiment::DriveProfile& profile) : gamepad_(profile.gamepad) {
     if (arguments.events.empty())
       device_.emplace(arguments.gamepad, profile.gamepad, gamepad_);
     else
-      events_ = read_input_events(arguments.events);
+      events_ = experiment::read_input_events(arguments.events);
   }
   bool read(Clock::time_point now) override {
     if (device_) {
       if (device_->read()) return true;
-      throw DriveError("the gamepad is gone");
+      throw experiment::DriveError("the gamepad is gone");
     }
     // Events of a file, in their own time.
     if (!start_) start_ = now;
@@ -108,13 +108,13 @@ class PadControls final : public Controls {
     return next_ < events_.size();
   }
   bool holds() override { return gamepad_.holds(); }
-  DriveValues values() const override { return gamepad_.values(); }
+  experiment::DriveValues values() const override { return gamepad_.values(); }
   bool take_next_joint() override { return gamepad_.take_next_joint(); }
 
  private:
-  Gamepad gamepad_;
-  std::optional<GamepadDevice> device_;
-  std::vector<InputEvent> events_;
+  experiment::Gamepad gamepad_;
+  std::optional<experiment::GamepadDevice> device_;
+  std::vector<experiment::InputEvent> events_;
   std::size_t next_ = 0;
   std::optional<Clock::time_point> start_;
 };
@@ -145,20 +145,20 @@ class RemoteVehicle {
     own_bus_.reset();
     if (!url.empty() && url != lcm_.url()) own_bus_.emplace(url);
   }
-  const std::optional<DrivenVehicle>& description() const { return description_; }
+  const std::optional<experiment::DrivenVehicle>& description() const { return description_; }
   bool removed() const { return removed_; }
-  const std::optional<DrivePose>& pose() const { return pose_; }
+  const std::optional<experiment::DrivePose>& pose() const { return pose_; }
   std::int64_t utime() const { return utime_; }
-  void publish(const std::vector<DriveCommand>& commands) {
+  void publish(const std::vector<experiment::DriveCommand>& commands) {
     bridges::LcmListener& bus = own_bus_ ? *own_bus_ : lcm_;
-    for (const DriveCommand& command : commands) bus.publish(command.channel, command.payload);
+    for (const experiment::DriveCommand& command : commands) bus.publish(command.channel, command.payload);
   }
 
  private:
   void take_vehicle(const shoal::sim_vehicle_t& message) {
     if (message.vehicle != name_) return;
     removed_ = !message.present;
-    if (message.present) description_ = driven_vehicle(message);
+    if (message.present) description_ = experiment::driven_vehicle(message);
   }
   void take_state(const shoal::sim_state_t& message) {
     utime_ = message.utime;
@@ -166,16 +166,17 @@ class RemoteVehicle {
       if (message.vehicle[i] != name_) continue;
       const auto& q = message.orientation[i];
       const double yaw_rad = std::atan2(2 * (q[0] * q[3] + q[1] * q[2]), 1 - 2 * (q[2] * q[2] + q[3] * q[3]));
-      pose_ = DrivePose{yaw_rad, -message.position_m[i][2]};  // the message does not have the level of the tide
+      pose_ =
+          experiment::DrivePose{yaw_rad, -message.position_m[i][2]};  // the message does not have the level of the tide
     }
   }
 
   const std::string name_;
   bridges::LcmListener lcm_;
   std::optional<bridges::LcmListener> own_bus_;
-  std::optional<DrivenVehicle> description_;
+  std::optional<experiment::DrivenVehicle> description_;
   bool removed_ = false;
-  std::optional<DrivePose> pose_;
+  std::optional<experiment::DrivePose> pose_;
   std::int64_t utime_ = 0;
 };
 
@@ -197,7 +198,7 @@ std::optional<int> find_vehicle(const DriveArguments& arguments, RemoteVehicle& 
   }
   // Its description comes on another channel.
   for (const auto deadline = Clock::now() + 5s;
-       !vehicle.description() && Clock::now() < deadline && caught_signal() == 0;) {
+       !vehicle.description() && Clock::now() < deadline && experiment::caught_signal() == 0;) {
     vehicle.take();
     std::this_thread::sleep_for(5ms);
   }
@@ -207,13 +208,14 @@ std::optional<int> find_vehicle(const DriveArguments& arguments, RemoteVehicle& 
 }
 
 /// Returns the positions of the axes that the vehicle has; of kind joints the axis forward moves the selected joint.
-DriveValues values_for(const DriveMapping& mapping, const DriveValues& controls, std::size_t joint) {
-  DriveValues values;
+experiment::DriveValues values_for(const experiment::DriveMapping& mapping, const experiment::DriveValues& controls,
+                                   std::size_t joint) {
+  experiment::DriveValues values;
   for (const std::string& axis : mapping.axes()) {
     const auto found = controls.find(axis);
     values[axis] = found == controls.end() ? 0 : found->second;
   }
-  if (mapping.kind() != DriveKind::joints) return values;
+  if (mapping.kind() != experiment::DriveKind::joints) return values;
   const auto forward = controls.find("forward");
   if (forward != controls.end()) values[mapping.axes()[joint]] = forward->second;
   return values;
@@ -222,7 +224,7 @@ DriveValues values_for(const DriveMapping& mapping, const DriveValues& controls,
 /// Line that shows what the vehicle is commanded, on a terminal.
 class StatusLine {
  public:
-  void show(const std::string& vehicle, const DriveValues& values, const std::string& joint, bool moves) {
+  void show(const std::string& vehicle, const experiment::DriveValues& values, const std::string& joint, bool moves) {
     if (isatty(STDERR_FILENO) == 0) return;
     std::string line = vehicle + ":";
     for (const auto& [axis, value] : values)
@@ -241,19 +243,19 @@ class StatusLine {
 };
 
 /// Drives until the source ends, the vehicle is removed or a signal comes; then sends the safe command.
-int drive_on(const DriveArguments& arguments, RemoteVehicle& vehicle, Driver& driver, Controls& controls) {
+int drive_on(const DriveArguments& arguments, RemoteVehicle& vehicle, experiment::Driver& driver, Controls& controls) {
   constexpr auto tick = 5ms;
   int exit_code = exit_ok;
   std::size_t joint = 0;
   StatusLine status;
-  const bool has_joints = driver.mapping().kind() == DriveKind::joints;
+  const bool has_joints = driver.mapping().kind() == experiment::DriveKind::joints;
   try {
-    while (caught_signal() == 0 && !vehicle.removed()) {
+    while (experiment::caught_signal() == 0 && !vehicle.removed()) {
       const Clock::time_point now = Clock::now();
       const bool goes_on = controls.read(now);
       vehicle.take();
       if (controls.take_next_joint() && has_joints) joint = (joint + 1) % driver.mapping().axes().size();
-      const DriveValues values = values_for(driver.mapping(), controls.values(), joint);
+      const experiment::DriveValues values = values_for(driver.mapping(), controls.values(), joint);
       if (controls.holds())
         driver.hold(values, now);
       else if (!arguments.gamepad.empty() || !arguments.events.empty())
@@ -264,12 +266,12 @@ int drive_on(const DriveArguments& arguments, RemoteVehicle& vehicle, Driver& dr
       std::this_thread::sleep_for(tick);
     }
     if (vehicle.removed()) sim::log_info("vehicle '{}' was removed", arguments.vehicle);
-  } catch (const DriveError& error) {
+  } catch (const experiment::DriveError& error) {
     std::cerr << "shoal drive: " << error.what() << '\n';
     exit_code = exit_bus;
   }
   // The last command is a safe one.
-  for (int i = 0; i < Driver::safe_commands; ++i) {
+  for (int i = 0; i < experiment::Driver::safe_commands; ++i) {
     vehicle.publish(driver.safe(vehicle.utime(), vehicle.pose()));
     std::this_thread::sleep_for(20ms);
   }
@@ -278,32 +280,32 @@ int drive_on(const DriveArguments& arguments, RemoteVehicle& vehicle, Driver& dr
 
 int drive(const DriveArguments& arguments) {
   if (arguments.print_profile) {
-    std::cout << default_drive_profile();
+    std::cout << experiment::default_drive_profile();
     return exit_ok;
   }
   if (arguments.vehicle.empty())
     throw command_line::UsageError("needs the NAME of a vehicle; see `shoal drive --help`");
-  const DriveProfile profile = read_drive_profile(arguments.profile);
+  const experiment::DriveProfile profile = experiment::read_drive_profile(arguments.profile);
   const bool by_keys = arguments.gamepad.empty() && arguments.events.empty();
-  if (by_keys && !TerminalKeys::possible())
+  if (by_keys && !experiment::TerminalKeys::possible())
     throw command_line::UsageError("needs a terminal, or --gamepad or --events");
-  catch_signals(false);
+  experiment::catch_signals(false);
   try {
     // Open the gamepad first: it fails at once.
     std::unique_ptr<Controls> controls;
     if (!by_keys) controls = std::make_unique<PadControls>(arguments, profile);
     RemoteVehicle vehicle(arguments);
     if (const auto failed = find_vehicle(arguments, vehicle)) return *failed;
-    std::optional<DriveKind> kind;
+    std::optional<experiment::DriveKind> kind;
     if (!arguments.kind.empty()) kind = sim::value_of(drive_kind_words, arguments.kind);
-    Driver driver(profile, *vehicle.description(), kind);
+    experiment::Driver driver(profile, *vehicle.description(), kind);
     if (by_keys) {
       std::cerr << fmt::format("hold '{}' to move, '{}' centers, Ctrl-C ends\n", profile.keys.hold,
                                profile.keys.centre);
       controls = std::make_unique<KeyControls>(profile);
     }
     return drive_on(arguments, vehicle, driver, *controls);
-  } catch (const DriveError& error) {
+  } catch (const experiment::DriveError& error) {
     std::cerr << "shoal drive: " << error.what() << '\n';
     return exit_usage;
   }

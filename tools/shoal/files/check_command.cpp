@@ -87,9 +87,9 @@ std::size_t body_count(sim::LoadedWorld& loaded, sim::Warnings& warnings) {
   sim::World world(loaded.config, bus);
   print_notes(world);
   check_textures(loaded.config);
-  warn_of_processes(loaded, warnings);
-  warn_of_missing_programs(loaded, warnings);
-  warn_of_unchecked_arguments(loaded, warnings);
+  experiment::warn_of_processes(loaded, warnings);
+  experiment::warn_of_missing_programs(loaded, warnings);
+  experiment::warn_of_unchecked_arguments(loaded, warnings);
   return world.physics().bodies().size();
 }
 
@@ -119,13 +119,13 @@ void check_in_water(sim::VehicleConfig vehicle, sim::LoadOptions options) {
 
 void check_study(const std::string& path, const sim::LoadOptions& options) {
   sim::Warnings warnings;
-  StudyChanges changes;
+  experiment::StudyChanges changes;
   changes.load = options;
   changes.load.warnings = &warnings;
   changes.only_checked = true;
-  LoadedStudy study = load_study(path, changes);
+  experiment::LoadedStudy study = experiment::load_study(path, changes);
   for (sim::LoadedWorld& world : study.worlds) body_count(world, warnings);
-  const StudyConfig& config = study.config;
+  const experiment::StudyConfig& config = study.config;
   std::cout << path << ": study '" << config.name << "' of " << config.world_text() << ": "
             << counted(config.cases.size(), "case") << ", "
             << (config.factors.empty() ? "" : counted(study.points.size(), "point") + ", ")
@@ -164,7 +164,7 @@ void check(const std::string& path, const sim::LoadOptions& options) {
   with_messages.encode_message = shoal::encode_own_message;
   with_messages.resolve = false;
   sim::LoadedWorld loaded = sim::load_world(path, with_messages);
-  read_programs(loaded, {true, options.allow_paths});
+  experiment::read_programs(loaded, {true, options.allow_paths});
   sim::Warnings warnings;
   const std::size_t bodies = body_count(loaded, warnings);
   std::cout << path << ": world '" << loaded.config.name << "': " << counted(loaded.config.vehicles.size(), "vehicle")
@@ -195,7 +195,10 @@ static void add_check_command(CLI::App& app, int& exit_code) {
                  {"Every mistake is printed as file:line:column: who: rule, value.  Warnings have the "
                   "same form and leave the exit code at 0; see docs/reference/warnings.md."}});
   command->callback([path, options, &exit_code] {
-    check(file_by_name({ShippedKind::world, ShippedKind::vehicle, ShippedKind::study}, *path), *options);
+    check(
+        experiment::file_by_name(
+            {experiment::ShippedKind::world, experiment::ShippedKind::vehicle, experiment::ShippedKind::study}, *path),
+        *options);
     exit_code = exit_ok;
   });
 }

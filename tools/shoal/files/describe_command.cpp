@@ -46,9 +46,9 @@ std::string completion_of(const CLI::App& app, const std::string& shell) {
 }
 
 std::string schema_of(const std::string& file) {
-  if (file == "study") return study_schema(params_of<StudyConfig>());
+  if (file == "study") return study_schema(params_of<experiment::StudyConfig>());
   if (file == "motion") return motion_schema(params_of<sim::JointMotion>());
-  if (file == "drive") return drive_schema(params_of<DriveProfile>());
+  if (file == "drive") return drive_schema(params_of<experiment::DriveProfile>());
   return json_schema(file);
 }
 
@@ -106,7 +106,7 @@ static void add_describe_command(CLI::App& app, int& exit_code) {
       throw command_line::UsageError("needs a NAME, --page, --schema or --completion; see `shoal list devices`");
     const auto columns = static_cast<std::size_t>(sim::text_columns(STDOUT_FILENO));
     const std::string text =
-        *name == "study"    ? describe_keys("Keys of a study file.", params_of<StudyConfig>(), columns)
+        *name == "study"    ? describe_keys("Keys of a study file.", params_of<experiment::StudyConfig>(), columns)
         : *name == "motion" ? describe_keys("Keys of a motion file.", params_of<sim::JointMotion>(), columns)
                             : describe_text(*name, columns);
     if (text.empty()) {

@@ -15,8 +15,8 @@ namespace tools {
 namespace {
 
 struct FilmArguments {
-  FilmOptions film;
-  ClipOptions clips;
+  viewer::FilmOptions film;
+  viewer::ClipOptions clips;
   std::string size = "640x480", overlays = "labels,clock", shapes = "drawn", visibility;
   double fov_deg = 60;
   int split = 1;
@@ -25,14 +25,14 @@ struct FilmArguments {
 /// Makes the film, or the clips.
 int render(const FilmArguments& arguments) {
   if (!arguments.clips.directory.empty()) {
-    const ClipOutcome outcome = make_clips(arguments.film, arguments.clips);
+    const viewer::ClipOutcome outcome = viewer::make_clips(arguments.film, arguments.clips);
     std::cout << outcome.to_text();
-    return outcome.interrupted ? 128 + caught_signal() : exit_ok;
+    return outcome.interrupted ? 128 + experiment::caught_signal() : exit_ok;
   }
-  const FilmOutcome outcome = make_film(arguments.film);
+  const viewer::FilmOutcome outcome = viewer::make_film(arguments.film);
   if (outcome.interrupted) {
     std::cerr << "shoal: interrupted after " << outcome.frames << " frames; there is no film\n";
-    return 128 + caught_signal();
+    return 128 + experiment::caught_signal();
   }
   std::cout << outcome.to_text(arguments.film);
   return exit_ok;
@@ -40,7 +40,7 @@ int render(const FilmArguments& arguments) {
 
 int film(FilmArguments& arguments) {
   // Options of which the text is parsed.
-  FilmOptions& film = arguments.film;
+  viewer::FilmOptions& film = arguments.film;
   const ImageSize size = parse_image_size(arguments.size);
   film.format.width = size.width;
   film.format.height = size.height;
@@ -54,13 +54,13 @@ int film(FilmArguments& arguments) {
   if (film.out.empty() && arguments.clips.directory.empty())
     throw CLI::ValidationError("--out", "is required, or --clips");
   if (film.until_s && *film.until_s < film.from_s) throw CLI::ValidationError("--to", "must not be before --from");
-  catch_signals(true);
+  experiment::catch_signals(true);
   // Film, with one error for each cause.
   try {
     return render(arguments);
   } catch (const std::invalid_argument& error) {
     throw CLI::ValidationError(film.out.empty() ? "--clips-as" : "--out", error.what());
-  } catch (const CameraError& error) {
+  } catch (const viewer::CameraError& error) {
     throw CLI::ValidationError("--camera", error.what());
   } catch (const sim::PhysicsFault& fault) {
     std::cerr << "shoal: " << fault.what() << '\n';
@@ -69,7 +69,7 @@ int film(FilmArguments& arguments) {
 }
 
 void add_film_options(CLI::App& command, FilmArguments& arguments) {
-  FilmOptions& film = arguments.film;
+  viewer::FilmOptions& film = arguments.film;
   command
       .add_option("--camera", film.cameras,
                   "all, top, top:VEHICLE, chase:VEHICLE, orbit:VEHICLE, from:VEHICLE/CAMERA, or a file *.yaml with key "
@@ -113,7 +113,7 @@ void add_film_options(CLI::App& command, FilmArguments& arguments) {
   command.add_flag("--quiet", film.quiet, "no progress");
 }
 
-void add_clip_options(CLI::App& command, ClipOptions& clips) {
+void add_clip_options(CLI::App& command, viewer::ClipOptions& clips) {
   CLI::Option* directory =
       command
           .add_option("--clips", clips.directory,

@@ -53,9 +53,9 @@ CLI::Option* add_overlay_option(CLI::App& command, std::string& text) {
       ->type_name("LIST");
 }
 
-OverlayChoice parse_overlay_option(const std::string& text) {
+viewer::OverlayChoice parse_overlay_option(const std::string& text) {
   try {
-    return parse_overlays(text);
+    return viewer::parse_overlays(text);
   } catch (const std::invalid_argument& error) {
     throw CLI::ValidationError("--overlay", error.what());
   }
@@ -70,9 +70,9 @@ void add_shapes_option(CLI::App& command, std::string& text) {
       ->capture_default_str();
 }
 
-BodyShapes parse_shapes(const std::string& text) {
-  if (text == "wire") return BodyShapes::wire;
-  return text == "collision" ? BodyShapes::collision : BodyShapes::drawn;
+viewer::BodyShapes parse_shapes(const std::string& text) {
+  if (text == "wire") return viewer::BodyShapes::wire;
+  return text == "collision" ? viewer::BodyShapes::collision : viewer::BodyShapes::drawn;
 }
 
 }  // namespace tools

@@ -28,11 +28,11 @@ std::optional<double> parse_visibility(const std::string& text);
 /// Adds `--overlay LIST`.
 CLI::Option* add_overlay_option(CLI::App& command, std::string& text);
 /// Parses it.  Throws CLI::ValidationError.
-OverlayChoice parse_overlay_option(const std::string& text);
+viewer::OverlayChoice parse_overlay_option(const std::string& text);
 
 /// Adds `--shapes KIND`; `text` must be `drawn` before.
 void add_shapes_option(CLI::App& command, std::string& text);
 /// Returns the choice of a text that passed the check of the option.
-BodyShapes parse_shapes(const std::string& text);
+viewer::BodyShapes parse_shapes(const std::string& text);
 
 }  // namespace tools

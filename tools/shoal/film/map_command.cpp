@@ -27,7 +27,7 @@ struct MapArguments {
   std::string area, channel, out = "map.png";
 };
 
-std::optional<MapArea> parse_area(const std::string& text) {
+std::optional<experiment::MapArea> parse_area(const std::string& text) {
   if (text.empty()) return std::nullopt;
   std::array<double, 4> numbers{};
   const char* at = text.data();
@@ -40,7 +40,7 @@ std::optional<MapArea> parse_area(const std::string& text) {
       throw CLI::ValidationError("--area", "must be four numbers in meters such as -20,-15,20,15, got '" + text + "'");
     at = next + 1;
   }
-  return MapArea{numbers[0], numbers[1], numbers[2], numbers[3]};
+  return experiment::MapArea{numbers[0], numbers[1], numbers[2], numbers[3]};
 }
 
 /// `map.png`, or `map_0003.png` for one of several.
@@ -49,10 +49,10 @@ std::string numbered(const MapArguments& arguments, int number) {
   return fmt::format("{}_{:04}.png", arguments.out.substr(0, arguments.out.rfind('.')), number);
 }
 
-void write(const MapArguments& arguments, const GridMap& map, const std::string& path, double at_s) {
-  const std::string yaml = write_map(path, map);
+void write(const MapArguments& arguments, const experiment::GridMap& map, const std::string& path, double at_s) {
+  const std::string yaml = experiment::write_map(path, map);
   std::size_t occupied = 0;
-  for (const Cell cell : map.cells) occupied += cell == Cell::occupied ? 1 : 0;
+  for (const experiment::Cell cell : map.cells) occupied += cell == experiment::Cell::occupied ? 1 : 0;
   std::cout << fmt::format("{}, {}: {} x {} cells of {:g} m, {} occupied, {} at {:.3f} s\n", path, yaml,
                            map.frame.width, map.frame.height, map.frame.cell_m, occupied,
                            arguments.channel.empty() ? arguments.source : arguments.channel, at_s);
@@ -69,15 +69,16 @@ void for_times(const MapArguments& arguments, Take take) {
   }
 }
 
-MapFrame frame_of(const MapArguments& arguments, const std::optional<MapArea>& area, const sim::World& world) {
-  const std::optional<MapArea> all = area ? area : area_of_objects(world, arguments.height_m);
+experiment::MapFrame frame_of(const MapArguments& arguments, const std::optional<experiment::MapArea>& area,
+                              const sim::World& world) {
+  const std::optional<experiment::MapArea> all = area ? area : experiment::area_of_objects(world, arguments.height_m);
   if (!all)
     throw std::runtime_error(
         fmt::format("{}: no object is {:g} m above zero at {:.6g} s: give --area, or another "
                     "--height",
                     arguments.source, arguments.height_m, sim::to_seconds(world.now())));
   try {
-    return frame_of_area(*all, arguments.cell_m);
+    return experiment::frame_of_area(*all, arguments.cell_m);
   } catch (const std::invalid_argument& error) {
     throw CLI::ValidationError("--area", error.what());
   }
@@ -86,17 +87,18 @@ MapFrame frame_of(const MapArguments& arguments, const std::optional<MapArea>& a
 /// Writes true maps.
 int write_truth(const MapArguments& arguments) {
   const auto area = parse_area(arguments.area);
-  if (area) frame_of_area(*area, arguments.cell_m);
-  const std::unique_ptr<FilmSource> source = open_film_source(arguments.source, arguments.load);
+  if (area) experiment::frame_of_area(*area, arguments.cell_m);
+  const std::unique_ptr<viewer::FilmSource> source = viewer::open_film_source(arguments.source, arguments.load);
   if (sim::from_seconds(arguments.at_s) < source->world().now() || arguments.at_s > source->end_s() + 1e-9)
     throw std::runtime_error(fmt::format("{}: the log goes from {:.6g} s to {:.6g} s, --at is {:.6g} s",
                                          arguments.source, sim::to_seconds(source->world().now()), source->end_s(),
                                          arguments.at_s));
-  std::optional<MapFrame> frame;  // of the first map: the maps of a series fit
+  std::optional<experiment::MapFrame> frame;  // of the first map: the maps of a series fit
   for_times(arguments, [&](double at_s, int number) {
     if (!source->advance_to(sim::from_seconds(at_s))) return false;
     if (!frame) frame = frame_of(arguments, area, source->world());
-    write(arguments, true_map(source->world(), *frame, arguments.height_m), numbered(arguments, number), at_s);
+    write(arguments, experiment::true_map(source->world(), *frame, arguments.height_m), numbered(arguments, number),
+          at_s);
     return true;
   });
   return exit_ok;
@@ -104,9 +106,9 @@ int write_truth(const MapArguments& arguments) {
 
 /// Writes maps that a program published.
 int write_published(const MapArguments& arguments) {
-  PublishedMaps maps(arguments.source, arguments.channel);
+  experiment::PublishedMaps maps(arguments.source, arguments.channel);
   for_times(arguments, [&](double at_s, int number) {
-    const std::optional<GridMap> map = maps.at(at_s);
+    const std::optional<experiment::GridMap> map = maps.at(at_s);
     if (!map) return false;
     write(arguments, *map, numbered(arguments, number), at_s);
     return true;
@@ -120,7 +122,7 @@ int map(const MapArguments& arguments) {
   if (arguments.every_s && arguments.until_s < arguments.at_s)
     throw CLI::ValidationError("--until", "must not be before --at");
   check_writable(numbered(arguments, 0));
-  if (!arguments.channel.empty() && !is_event_log(arguments.source))
+  if (!arguments.channel.empty() && !viewer::is_event_log(arguments.source))
     throw std::runtime_error(arguments.source + ": --channel needs a log of shoal run --record");
   try {
     return arguments.channel.empty() ? write_truth(arguments) : write_published(arguments);

@@ -38,7 +38,7 @@ struct SnapArguments {
   std::string visibility, overlays = "none", shapes = "drawn";
   // What the texts above give.
   std::optional<double> visibility_m;
-  OverlayChoice overlay;
+  viewer::OverlayChoice overlay;
 
   /// Returns the log or the world.
   const std::string& source() const { return log.empty() ? world : log; }
@@ -46,8 +46,8 @@ struct SnapArguments {
 
 /// View of an image, and which vehicles it shows badly.
 struct SnapView {
-  SceneView scene;
-  std::optional<Overview> overview;
+  viewer::SceneView scene;
+  std::optional<viewer::Overview> overview;
 };
 
 using Numbers = std::vector<double>;
@@ -86,23 +86,23 @@ SnapView free_view(const SnapArguments& arguments, const sim::World& world) {
   view.scene.options.light = world.config().light;
   view.scene.visibility_m = arguments.visibility_m;
   if (arguments.eye.empty()) {
-    view.overview = overview_of(world, view.scene.optics, arguments.all);
+    view.overview = viewer::overview_of(world, view.scene.optics, arguments.all);
     view.scene.X_WS = view.overview->X_WS;
     return view;
   }
   const sim::Vector3d eye_W = parse_point("--eye", arguments.eye), look_W = parse_point("--look", arguments.look);
   if ((look_W - eye_W).norm() < 1e-6) throw CLI::ValidationError("--look", "must not be the point of --eye");
-  view.scene.X_WS = look_at(eye_W, look_W);
+  view.scene.X_WS = viewer::look_at(eye_W, look_W);
   return view;
 }
 
 /// Returns the view of a camera of a vehicle; with --visibility, with water, which the camera itself does not see.
 SnapView camera_view(const SnapArguments& arguments, const sim::World& world) {
   try {
-    SnapView view{view_of_camera(world, arguments.from), std::nullopt};
+    SnapView view{viewer::view_of_camera(world, arguments.from), std::nullopt};
     if (!arguments.visibility.empty()) view.scene.visibility_m = arguments.visibility_m;
     return view;
-  } catch (const CameraError& error) {
+  } catch (const viewer::CameraError& error) {
     const std::string text = error.what();
     throw CLI::ValidationError("--from", text + (text.ends_with("has none") ? ", see --eye" : ""));
   }
@@ -110,7 +110,7 @@ SnapView camera_view(const SnapArguments& arguments, const sim::World& world) {
 
 SnapView make_view(const SnapArguments& arguments, const sim::World& world) {
   SnapView made = arguments.from.empty() ? free_view(arguments, world) : camera_view(arguments, world);
-  SceneView& view = made.scene;
+  viewer::SceneView& view = made.scene;
   if (!arguments.image.empty()) {
     view.grey = arguments.image == "grey";
     view.options.kind = arguments.image == "depth"                   ? sim::ImageKind::depth
@@ -120,7 +120,7 @@ SnapView make_view(const SnapArguments& arguments, const sim::World& world) {
   }
   if (arguments.antialias) view.antialias = *arguments.antialias;
   if (view.options.kind != sim::ImageKind::color) view.antialias = 1;
-  if (view.options.kind != sim::ImageKind::color && arguments.overlay.shapes != BodyShapes::drawn)
+  if (view.options.kind != sim::ImageKind::color && arguments.overlay.shapes != viewer::BodyShapes::drawn)
     throw CLI::ValidationError("--shapes", "must be drawn for an image without color");
   const std::int64_t rays = std::int64_t{view.optics.width} * view.optics.height * view.antialias * view.antialias;
   if (rays > 4 * sim::max_image_pixels)
@@ -149,13 +149,13 @@ void warn(const SnapView& view) {
                   sim::list_text(view.overview->tiny, 8));
 }
 
-void take_one(const SnapArguments& arguments, const sim::World& world, const std::string& path, ScenePainter& painter,
-              Overlay& overlay) {
+void take_one(const SnapArguments& arguments, const sim::World& world, const std::string& path,
+              viewer::ScenePainter& painter, viewer::Overlay& overlay) {
   SnapView view = make_view(arguments, world);
   warn(view);
   overlay.prepare(view.scene);
   const auto start = std::chrono::steady_clock::now();
-  RenderedScene& rendered = painter.paint(view.scene);
+  viewer::RenderedScene& rendered = painter.paint(view.scene);
   overlay.observe();
   if (arguments.overlay.any() && view.scene.options.kind == sim::ImageKind::color) overlay.draw(rendered, view.scene);
   const sim::Image8& output = rendered.image;
@@ -174,14 +174,15 @@ void take_one(const SnapArguments& arguments, const sim::World& world, const std
 }
 
 /// Runs to the times of the images, and takes them.
-void take_all(const SnapArguments& arguments, FilmSource& source) {
+void take_all(const SnapArguments& arguments, viewer::FilmSource& source) {
   constexpr double trail_s = 60;
-  LogEstimates estimates;
+  viewer::LogEstimates estimates;
   if (arguments.overlay.ellipses && !source.log().empty())
-    estimates = LogEstimates(source.log(), arguments.at_s - trail_s, std::max(arguments.at_s, arguments.until_s), 0.5);
-  Overlay overlay(source.world(), {arguments.overlay, trail_s, 2000, ""}, std::move(estimates));
-  const PingObserver pings(source.world(), overlay);
-  ScenePainter painter(source.world());
+    estimates =
+        viewer::LogEstimates(source.log(), arguments.at_s - trail_s, std::max(arguments.at_s, arguments.until_s), 0.5);
+  viewer::Overlay overlay(source.world(), {arguments.overlay, trail_s, 2000, ""}, std::move(estimates));
+  const viewer::PingObserver pings(source.world(), overlay);
+  viewer::ScenePainter painter(source.world());
   int number = 0;
   for (double at_s = arguments.at_s; number == 0 || at_s <= arguments.until_s + 1e-9; ++number) {
     while (source.world().now() < sim::from_seconds(at_s) && source.step())
@@ -206,9 +207,9 @@ int snap(SnapArguments& arguments) {
   arguments.overlay = parse_overlay_option(arguments.overlays);
   arguments.overlay.shapes = parse_shapes(arguments.shapes);
   // Load the world, or the log.
-  if (!arguments.log.empty() && !is_event_log(arguments.log))
+  if (!arguments.log.empty() && !viewer::is_event_log(arguments.log))
     throw std::runtime_error(arguments.log + ": is not an LCM log: it cannot be read, or begins with something else");
-  const std::unique_ptr<FilmSource> source = open_film_source(arguments.source(), arguments.load);
+  const std::unique_ptr<viewer::FilmSource> source = viewer::open_film_source(arguments.source(), arguments.load);
   if (sim::from_seconds(arguments.at_s) < source->world().now() || arguments.at_s > source->end_s() + 1e-9)
     throw std::runtime_error(fmt::format("{}: the log goes from {:.6g} s to {:.6g} s, --at is {:.6g} s", arguments.log,
                                          sim::to_seconds(source->world().now()), source->end_s(), arguments.at_s));

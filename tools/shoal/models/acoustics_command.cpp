@@ -68,8 +68,8 @@ std::vector<double> parse_ranges(const std::string& text) {
 }
 
 /// Parses a position `x,y,z`, a transducer `vehicle/device`, or a vehicle.
-LinkEnd find_end(const char* option, const std::string& text, const sim::World& world) {
-  LinkEnd end;
+verification::LinkEnd find_end(const char* option, const std::string& text, const sim::World& world) {
+  verification::LinkEnd end;
   if (const auto p_W = parse_three(text, ',')) {
     end.p_W = *p_W;
     return end;
@@ -91,9 +91,9 @@ LinkEnd find_end(const char* option, const std::string& text, const sim::World& 
       option, "must be a place such as 4,-3,-2.5, a transducer or a vehicle, got '" + text + "'" + known);
 }
 
-std::vector<AcousticPacket> packets_of(const AcousticsArguments& arguments,
-                                       const devices::AcousticModem::Params* modem) {
-  std::vector<AcousticPacket> packets;
+std::vector<verification::AcousticPacket> packets_of(const AcousticsArguments& arguments,
+                                                     const devices::AcousticModem::Params* modem) {
+  std::vector<verification::AcousticPacket> packets;
   for (const std::string& text : arguments.packets) {
     const auto packet = parse_packet(text);
     if (!packet)
@@ -102,7 +102,7 @@ std::vector<AcousticPacket> packets_of(const AcousticsArguments& arguments,
     packets.push_back(*packet);
   }
   if (arguments.micromodem)
-    for (AcousticPacket packet : micromodem_packets()) {
+    for (verification::AcousticPacket packet : verification::micromodem_packets()) {
       if (arguments.bandwidth_Hz) packet.bandwidth_Hz.reset();
       packets.push_back(packet);
     }
@@ -127,7 +127,8 @@ const devices::AcousticModem::Params* modem_keys(const std::string& full_name, c
 }
 
 /// Sets the signal of the link: that of the sending modem, if any, overridden by the options.
-void take_signal(AcousticLink& link, const AcousticsArguments& arguments, const devices::AcousticModem::Params* modem) {
+void take_signal(verification::AcousticLink& link, const AcousticsArguments& arguments,
+                 const devices::AcousticModem::Params* modem) {
   if (modem != nullptr) {
     link.source_level = sim::Decibels(modem->source_level_dB);
     link.centre_Hz = modem->frequency_Hz;
@@ -143,8 +144,8 @@ void take_signal(AcousticLink& link, const AcousticsArguments& arguments, const 
   if (arguments.coding_gain_dB) link.coding_gain = sim::Decibels(*arguments.coding_gain_dB);
 }
 
-AcousticLink link_of(const AcousticsArguments& arguments, const sim::World& world) {
-  AcousticLink link;
+verification::AcousticLink link_of(const AcousticsArguments& arguments, const sim::World& world) {
+  verification::AcousticLink link;
   take_signal(link, arguments, modem_keys(arguments.from, world));
   link.detection = sim::Decibels(arguments.detection_dB.value_or(6));
   if (arguments.from.empty() != arguments.to.empty())
@@ -162,7 +163,7 @@ AcousticLink link_of(const AcousticsArguments& arguments, const sim::World& worl
 }
 
 /// Returns the depth of the fixed bottom below the middle of the link, for echoes; nothing if there is none.
-std::optional<double> water_depth_m(const AcousticLink& link, const sim::World& world) {
+std::optional<double> water_depth_m(const verification::AcousticLink& link, const sim::World& world) {
   sim::Vector3d p_W = (link.from.p_W + link.to.p_W) / 2;
   const double surface_m = world.medium().surface_m(p_W.x(), p_W.y());
   p_W.z() = std::min(link.from.p_W.z(), link.to.p_W.z());
@@ -206,7 +207,7 @@ bool in_ground(const sim::Vector3d& p_W, const sim::World& world) {
 }
 
 /// Checks that both ends are in water.
-void check_end(const char* option, const LinkEnd& end, const sim::World& world) {
+void check_end(const char* option, const verification::LinkEnd& end, const sim::World& world) {
   const sim::Vector3d& p_W = end.p_W;
   const std::string place = fmt::format("{:g},{:g},{:g}", p_W.x(), p_W.y(), p_W.z());
   if (!world.medium().in_water(p_W))
@@ -215,7 +216,7 @@ void check_end(const char* option, const LinkEnd& end, const sim::World& world) 
   if (in_ground(p_W, world)) throw CLI::ValidationError(option, "is in the ground at " + place);
 }
 
-void warn(const AcousticLink& link, const sim::World& world) {
+void warn(const verification::AcousticLink& link, const sim::World& world) {
   sim::Random random(1, "look");
   random.begin_step(0);
   const int none = -2;  // a group that does not exist
@@ -225,9 +226,9 @@ void warn(const AcousticLink& link, const sim::World& world) {
 }
 
 int show_closed_forms(const std::string& file) {
-  const std::vector<ClosedFormRow> rows = acoustic_closed_forms(file);
-  std::cout << closed_forms_text(rows);
-  for (const ClosedFormRow& row : rows)
+  const std::vector<verification::ClosedFormRow> rows = verification::acoustic_closed_forms(file);
+  std::cout << verification::closed_forms_text(rows);
+  for (const verification::ClosedFormRow& row : rows)
     if (!row.within()) return exit_failed;
   return exit_ok;
 }
@@ -245,45 +246,49 @@ int show(AcousticsArguments& arguments) {
   arguments.load.encode_message = shoal::encode_own_message;
   const sim::WorldConfig config =
       (arguments.world.empty() ? sim::load_world_text(plain_world, "plain sea", arguments.load)
-                               : sim::load_world(world_file(arguments.world), arguments.load))
+                               : sim::load_world(experiment::world_file(arguments.world), arguments.load))
           .config;
   sim::InProcessBus bus;
   const sim::World world(config, bus);
   if (!world.medium().has_water()) throw CLI::ValidationError("WORLD", "has no water to carry sound");
-  const AcousticLink link = link_of(arguments, world);
-  const std::vector<AcousticPacket> packets = packets_of(arguments, modem_keys(arguments.from, world));
+  const verification::AcousticLink link = link_of(arguments, world);
+  const std::vector<verification::AcousticPacket> packets = packets_of(arguments, modem_keys(arguments.from, world));
   check_end(arguments.from.empty() ? "--depth" : "--from", link.from, world);
   check_end(arguments.to.empty() ? "--depth" : "--to", link.to, world);
   warn(link, world);
   const std::optional<double> depth_m = arguments.water_depth_m ? arguments.water_depth_m : water_depth_m(link, world);
   if (!arguments.rays.empty()) {
-    if (!sound_bends(config.acoustics, world.medium()))
+    if (!verification::sound_bends(config.acoustics, world.medium()))
       throw CLI::ValidationError("--rays",
                                  "sound is straight in this world: give its water a profile, or 'propagation: rays'");
     const double source_m = world.medium().still_surface_m() - link.from.p_W.z();
     const double level_m = (link.to.p_W - link.from.p_W).head<2>().norm();
-    draw_rays(ray_field(source_m, std::max(level_m, 1.0), link.centre_Hz, config.acoustics, world.medium(), depth_m),
-              fmt::format("Rays from a depth of {:g} m, {:g} Hz", source_m, link.centre_Hz), arguments.rays);
+    verification::draw_rays(verification::ray_field(source_m, std::max(level_m, 1.0), link.centre_Hz, config.acoustics,
+                                                    world.medium(), depth_m),
+                            fmt::format("Rays from a depth of {:g} m, {:g} Hz", source_m, link.centre_Hz),
+                            arguments.rays);
     return exit_ok;
   }
   // Budget of a single link.
   if (ranges_m.empty()) {
-    const LinkBudget budget = link_budget(link, config.acoustics, world.medium(), depth_m);
+    const verification::LinkBudget budget = verification::link_budget(link, config.acoustics, world.medium(), depth_m);
     std::vector<double> delivered;
-    for (const AcousticPacket& packet : packets)
-      delivered.push_back(delivery_probability(link, packet, config.acoustics, world.medium(), depth_m));
-    std::cout << budget_text(link, budget, config.acoustics) << '\n' << packets_text(link, budget, packets, delivered);
+    for (const verification::AcousticPacket& packet : packets)
+      delivered.push_back(verification::delivery_probability(link, packet, config.acoustics, world.medium(), depth_m));
+    std::cout << verification::budget_text(link, budget, config.acoustics) << '\n'
+              << verification::packets_text(link, budget, packets, delivered);
     return exit_ok;
   }
   // Table or plot over range.
-  const std::vector<RangeRow> rows = over_range(link, packets, ranges_m, config.acoustics, world.medium(), depth_m);
+  const std::vector<verification::RangeRow> rows =
+      verification::over_range(link, packets, ranges_m, config.acoustics, world.medium(), depth_m);
   if (arguments.image.empty())
-    std::cout << csv_text(rows, packets);
+    std::cout << verification::csv_text(rows, packets);
   else
-    draw_over_range(rows, packets,
-                    fmt::format("{:g} dB re 1 uPa at 1 m, {:g} Hz, {:g} Hz wide", link.source_level.dB(),
-                                link.centre_Hz, link.bandwidth_Hz),
-                    arguments.image);
+    verification::draw_over_range(rows, packets,
+                                  fmt::format("{:g} dB re 1 uPa at 1 m, {:g} Hz, {:g} Hz wide", link.source_level.dB(),
+                                              link.centre_Hz, link.bandwidth_Hz),
+                                  arguments.image);
   return exit_ok;
 }
 

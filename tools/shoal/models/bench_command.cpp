@@ -17,22 +17,22 @@ struct BenchArguments {
   std::vector<std::string> scenes{"land"};
   std::vector<int> vehicles;  // empty: the usual numbers of each scene
   std::vector<int> threads{1};
-  BenchOptions options;
+  verification::BenchOptions options;
   std::string csv;
   bool world = false;
 };
 
 std::vector<std::string> bench_scene_names() {
   std::vector<std::string> names;
-  for (const BenchScene& scene : bench_scenes()) names.push_back(scene.name);
+  for (const verification::BenchScene& scene : verification::bench_scenes()) names.push_back(scene.name);
   return names;
 }
 
 /// Returns the scenes by their names in order; `all`: each.
-std::vector<const BenchScene*> chosen_scenes(const std::vector<std::string>& names) {
-  std::vector<const BenchScene*> scenes;
+std::vector<const verification::BenchScene*> chosen_scenes(const std::vector<std::string>& names) {
+  std::vector<const verification::BenchScene*> scenes;
   for (const std::string& name : names)
-    for (const BenchScene& scene : bench_scenes())
+    for (const verification::BenchScene& scene : verification::bench_scenes())
       if (name == "all" || scene.name == name) scenes.push_back(&scene);
   return scenes;
 }
@@ -43,7 +43,7 @@ class BenchCsv {
   explicit BenchCsv(const std::string& path) : path_(path) {
     if (path_.empty()) return;
     out_.open(path_);
-    write(bench_csv_head());
+    write(verification::bench_csv_head());
   }
   void write(const std::string& line) {
     if (path_.empty()) return;
@@ -57,27 +57,28 @@ class BenchCsv {
 
 void bench(const BenchArguments& arguments) {
   BenchCsv csv(arguments.csv);
-  for (const BenchScene* scene : chosen_scenes(arguments.scenes)) {
+  for (const verification::BenchScene* scene : chosen_scenes(arguments.scenes)) {
     std::cout << fmt::format("{}: {}\n{:>9} {:>7} {:>8} {:>9} {:>24} {:>16}  {:<16}  {}\n", scene->name, scene->about,
                              "vehicles", "threads", "load s", "memory kB", "CPU ms per vehicle and s",
                              "real-time factor", "run hash", "largest parts");
     for (const int vehicles : arguments.vehicles.empty() ? scene->usual_sizes : arguments.vehicles)
       for (const int threads : arguments.threads) {
         if (!(std::cout << std::flush)) return;  // the output was closed
-        const BenchFigures figures = measure_bench_apart(*scene, vehicles, threads, arguments.options);
+        const verification::BenchFigures figures =
+            verification::measure_bench_apart(*scene, vehicles, threads, arguments.options);
         std::cout << fmt::format("{:>9} {:>7} {:>8.3f} {:>9.1f} {:>24.4g} {:>16.4g}  {:016x}  {}\n", vehicles,
                                  figures.threads, figures.load_s, figures.memory_kB, figures.cpu_ms_per_vehicle_s,
-                                 figures.real_time_factor, figures.run_hash, largest_parts(figures));
+                                 figures.real_time_factor, figures.run_hash, verification::largest_parts(figures));
         const std::string advice = figures.shared_work.advice(figures.threads);
         std::cout << (advice.empty() ? "" : fmt::format("{:>9} {}\n", "", advice)) << std::flush;
-        csv.write(bench_csv_line(*scene, figures));
+        csv.write(verification::bench_csv_line(*scene, figures));
       }
   }
 }
 
 /// Prints the world of each scene, with the first number of vehicles.
 void print_worlds(const BenchArguments& arguments) {
-  for (const BenchScene* scene : chosen_scenes(arguments.scenes))
+  for (const verification::BenchScene* scene : chosen_scenes(arguments.scenes))
     std::cout << scene->world_text((arguments.vehicles.empty() ? scene->usual_sizes : arguments.vehicles).front());
 }
 
@@ -121,7 +122,8 @@ static void add_bench_command(CLI::App& app, int& exit_code) {
   command->add_flag("--print-world", arguments->world, "print the world file of the scene instead");
   add_set_option(*command, arguments->options.sets);
   std::vector<std::string> notes;
-  for (const BenchScene& scene : bench_scenes()) notes.push_back(scene.name + ": " + scene.about + ".");
+  for (const verification::BenchScene& scene : verification::bench_scenes())
+    notes.push_back(scene.name + ": " + scene.about + ".");
   command_line::set_help_end(*command, {{"shoal bench", "shoal bench sea naive --vehicles 100,1000 --measure 5",
                                          "shoal bench land --vehicles 1000 --threads 1,2,4 --csv land.csv",
                                          "shoal bench land --vehicles 100 --print-world > land.yaml"},

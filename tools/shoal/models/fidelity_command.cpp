@@ -24,14 +24,14 @@ struct FidelityArguments {
 
 /// Changes every coefficient, prints those that a case should see and none does, and writes the page of all.  Returns
 /// true when there are none.
-bool mutate(const FidelityArguments& arguments, const FidelityFile& file) {
-  const std::vector<FidelityMutation> mutations =
-      mutate_fidelity(file, *arguments.mutation, [](const std::string& line) { std::cerr << line << '\n'; });
+bool mutate(const FidelityArguments& arguments, const verification::FidelityFile& file) {
+  const std::vector<verification::FidelityMutation> mutations = verification::mutate_fidelity(
+      file, *arguments.mutation, [](const std::string& line) { std::cerr << line << '\n'; });
   if (!arguments.results.empty())
-    write_fidelity_mutations(arguments.results,
-                             fidelity_mutations_page(mutations, *arguments.mutation, arguments.cases));
+    verification::write_fidelity_mutations(
+        arguments.results, verification::fidelity_mutations_page(mutations, *arguments.mutation, arguments.cases));
   bool all_seen = true;
-  for (const FidelityMutation& mutation : mutations) {
+  for (const verification::FidelityMutation& mutation : mutations) {
     if (!mutation.unseen() || !mutation.without_effect.empty()) continue;
     std::cout << mutation.vehicle << ": no case sees " << mutation.of.name << '\n';
     all_seen = false;
@@ -41,7 +41,7 @@ bool mutate(const FidelityArguments& arguments, const FidelityFile& file) {
 
 int fidelity(const FidelityArguments& arguments) {
   // Options of all cases.
-  FidelityOptions options;
+  verification::FidelityOptions options;
   options.step_s = arguments.step_s;
   for (const std::string& change : arguments.overrides) {
     const auto equals = change.find('=');
@@ -50,8 +50,8 @@ int fidelity(const FidelityArguments& arguments) {
     options.overrides[change.substr(0, equals)] = change.substr(equals + 1);
   }
   // Cases to run.
-  FidelityFile file = read_fidelity_file(arguments.cases);
-  std::erase_if(file.cases, [&](const FidelityCase& of) {
+  verification::FidelityFile file = verification::read_fidelity_file(arguments.cases);
+  std::erase_if(file.cases, [&](const verification::FidelityCase& of) {
     const auto is_selected = [&](const std::string& name) { return name == of.name || name == of.group; };
     return !arguments.names.empty() && std::none_of(arguments.names.begin(), arguments.names.end(), is_selected);
   });
@@ -59,17 +59,18 @@ int fidelity(const FidelityArguments& arguments) {
     throw CLI::ValidationError("CASES", "there is no case in " + arguments.cases);
   if (file.cases.empty()) throw CLI::ValidationError("--case", "no case has this name");
   // Results.
-  std::vector<FidelityResult> results;
+  std::vector<verification::FidelityResult> results;
   bool passed = true;
-  for (const FidelityCase& of : file.cases) {
-    results.push_back(run_fidelity_case(of, options));
+  for (const verification::FidelityCase& of : file.cases) {
+    results.push_back(verification::run_fidelity_case(of, options));
     passed = passed && results.back().missed.empty();
-    std::cerr << fidelity_line(results.back(), results.size(), file.cases.size()) << '\n';
+    std::cerr << verification::fidelity_line(results.back(), results.size(), file.cases.size()) << '\n';
   }
-  std::cout << fidelity_table(results);
-  for (const FidelityResult& result : results)
+  std::cout << verification::fidelity_table(results);
+  for (const verification::FidelityResult& result : results)
     for (const std::string& missed : result.missed) std::cout << result.of.name << ": missed " << missed << '\n';
-  if (!arguments.results.empty()) write_fidelity_report(arguments.results, file.text, results, arguments.csv);
+  if (!arguments.results.empty())
+    verification::write_fidelity_report(arguments.results, file.text, results, arguments.csv);
   // With a missed bar every change would seem to be seen.
   if (passed && arguments.mutation) passed = mutate(arguments, file);
   return passed ? exit_ok : exit_failed;

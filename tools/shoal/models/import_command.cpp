@@ -160,10 +160,10 @@ struct MrclamArguments {
 };
 
 int import_mrclam(const MrclamArguments& arguments) {
-  const MrclamData data = read_mrclam(arguments.directory);
-  const MrclamRecord record = write_mrclam_record(data, arguments.output, arguments.overwrite);
+  const experiment::MrclamData data = experiment::read_mrclam(arguments.directory);
+  const experiment::MrclamRecord record = experiment::write_mrclam_record(data, arguments.output, arguments.overwrite);
   int unknown = 0;
-  for (const MrclamData::Robot& robot : data.robots) unknown += robot.unknown_barcodes;
+  for (const experiment::MrclamData::Robot& robot : data.robots) unknown += robot.unknown_barcodes;
   if (unknown > 0) std::cerr << unknown << " measurements have barcodes that no subject has: left out\n";
   std::cout << arguments.output << ": " << counted(data.robots.size(), "robot") << ", "
             << counted(data.landmarks.size(), "landmark") << ", " << record.odometries << " odometry messages, "

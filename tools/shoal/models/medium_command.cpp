@@ -126,7 +126,7 @@ void print_waves(const sim::Medium& medium, const sim::Vector3d& p_W, double fro
 int look(MediumArguments& arguments) {
   const sim::Vector3d p_W = parse_point(arguments.at);
   arguments.load.encode_message = shoal::encode_own_message;
-  const sim::WorldConfig config = sim::load_world(world_file(arguments.world), arguments.load).config;
+  const sim::WorldConfig config = sim::load_world(experiment::world_file(arguments.world), arguments.load).config;
   sim::Medium medium(config.medium, config.physics.gravity_mps2, static_cast<std::uint64_t>(config.run.seed));
   medium.advance_to(sim::from_seconds(arguments.time_s));
   if (arguments.waves_s)

@@ -18,7 +18,7 @@ void add_format_options(CLI::App& command, FormatArguments& arguments) {
   command.add_option("--output", arguments.output, "file to write")->type_name("FILE")->required();
   command.add_option("--format", arguments.format, "format of the other program; unset: by the file")
       ->type_name("FORMAT")
-      ->check(command_line::one_of(motion_format_names()).description(""));
+      ->check(command_line::one_of(motion::motion_format_names()).description(""));
   command.add_option("--vehicle", arguments.vehicle, "vehicle with the joints; unset: that of the motion")
       ->type_name("VEHICLE");
   command
@@ -45,9 +45,10 @@ void add_format_options(CLI::App& command, FormatArguments& arguments) {
   command.add_flag("--overwrite", arguments.overwrite, "replace an existing file");
 }
 
-JointNames names_for(const FormatArguments& arguments, const std::string& vehicle_of_motion) {
+motion::JointNames names_for(const FormatArguments& arguments, const std::string& vehicle_of_motion) {
   if (!arguments.vehicle.empty())
-    return joint_names_of(file_by_name({ShippedKind::vehicle}, arguments.vehicle), arguments.names);
+    return joint_names_of(experiment::file_by_name({experiment::ShippedKind::vehicle}, arguments.vehicle),
+                          arguments.names);
   if (arguments.keep_names || vehicle_of_motion.empty()) return {};
   const std::string file = vehicle_file_of(vehicle_of_motion, arguments.input);
   if (!file.empty()) return joint_names_of(file, "");
@@ -65,7 +66,7 @@ void check_output(const FormatArguments& arguments, const std::string& path) {
   check_writable(path);
 }
 
-bool may_lose(const FormatArguments& arguments, const Losses& losses) {
+bool may_lose(const FormatArguments& arguments, const motion::Losses& losses) {
   for (const std::string& loss : losses) std::cerr << arguments.input << ": " << sim::printable(loss) << '\n';
   if (losses.empty() || !arguments.strict) return true;
   std::cerr << arguments.input << ": nothing is written, because of --strict\n";
@@ -74,7 +75,7 @@ bool may_lose(const FormatArguments& arguments, const Losses& losses) {
 
 std::string formats_text(bool is_import) {
   std::string text;
-  for (const MotionFormat& format : motion_formats())
+  for (const motion::MotionFormat& format : motion::motion_formats())
     if (is_import ? format.read != nullptr : format.write != nullptr || format.write_folder != nullptr)
       text += (text.empty() ? "Formats: " : "; ") + std::string(format.name) + ", " + format.meaning;
   return text + ".";

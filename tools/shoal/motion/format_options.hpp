@@ -13,20 +13,20 @@ struct FormatArguments {
   std::string input, output, format, vehicle, names;
   double loop_step_ms = 0, row_ms = 20;
   bool keep_names = false, strict = false, overwrite = false;
-  FormatOptions options;
+  motion::FormatOptions options;
 };
 
 /// Adds the arguments that both commands have.
 void add_format_options(CLI::App& command, FormatArguments& arguments);
 
 /// Returns the names of joints for --vehicle, else for the vehicle that a motion names; reports when there is no file.
-JointNames names_for(const FormatArguments& arguments, const std::string& vehicle_of_motion);
+motion::JointNames names_for(const FormatArguments& arguments, const std::string& vehicle_of_motion);
 
 /// Throws when the output exists and may not be overwritten, or cannot be written.
 void check_output(const FormatArguments& arguments, const std::string& path);
 
 /// Prints what is lost to stderr; returns whether the command continues: not with --strict and a loss.
-bool may_lose(const FormatArguments& arguments, const Losses& losses);
+bool may_lose(const FormatArguments& arguments, const motion::Losses& losses);
 
 /// Returns a sentence with the formats that an import or an export has, for the help.
 std::string formats_text(bool is_import);

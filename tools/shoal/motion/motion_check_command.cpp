@@ -20,18 +20,18 @@ int check(const CheckArguments& arguments) {
   if (!arguments.fixed.empty()) check_new_file(arguments.fixed, arguments.overwrite);
   const sim::JointMotion motion = motion_of(arguments.file);
   const sim::VehicleConfig vehicle = vehicle_of(arguments.vehicle, motion);
-  const std::vector<MotionFinding> findings = check_motion(motion, vehicle);
-  for (const MotionFinding& finding : findings) std::cout << arguments.file << ": " << finding.text() << '\n';
+  const std::vector<motion::MotionFinding> findings = motion::check_motion(motion, vehicle);
+  for (const motion::MotionFinding& finding : findings) std::cout << arguments.file << ": " << finding.text() << '\n';
   if (findings.empty())
     std::cout << fmt::format("motion keeps all limits of {}\n", vehicle.vehicle);
   else
     std::cout << fmt::format("motion breaks limits of {}: {}\n", vehicle.vehicle, findings.size());
   if (arguments.fixed.empty()) return findings.empty() ? exit_ok : exit_failed;
-  sim::JointMotion fixed = mended(motion, vehicle);
-  fixed.name = motion_name_of(arguments.fixed);
+  sim::JointMotion fixed = motion::mended(motion, vehicle);
+  fixed.name = motion::motion_name_of(arguments.fixed);
   check_frames(arguments.fixed, fixed, arguments.overwrite);
-  write_motion(arguments.fixed, fixed);
-  const std::size_t left = check_motion(fixed, vehicle).size();
+  motion::write_motion(arguments.fixed, fixed);
+  const std::size_t left = motion::check_motion(fixed, vehicle).size();
   std::cout << fmt::format("{} written: {:.3f} s instead of {:.3f} s, {} findings left\n", arguments.fixed,
                            fixed.end_s(), motion.end_s(), left);
   return left == 0 ? exit_ok : exit_failed;

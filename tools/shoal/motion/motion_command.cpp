@@ -19,7 +19,7 @@ sim::JointMotion motion_of(const std::string& path) {
   try {
     return sim::load_motion(path);
   } catch (const sim::ConfigError& error) {
-    const MotionFormat* const format = motion_format_of_file(path, "");
+    const motion::MotionFormat* const format = motion::motion_format_of_file(path, "");
     if (format == nullptr || format->read == nullptr) throw;
     std::vector<std::string> lines = error.lines();
     lines.push_back(fmt::format("{}: looks like the format '{}'; `shoal motion import` reads it", path, format->name));
@@ -30,7 +30,8 @@ sim::JointMotion motion_of(const std::string& path) {
 sim::VehicleConfig vehicle_of(const std::string& file, const sim::JointMotion& motion) {
   if (file.empty() && motion.vehicle.empty())
     throw command_line::UsageError("the motion names no vehicle: give its file with --vehicle");
-  return sim::load_vehicle(file_by_name({ShippedKind::vehicle}, file.empty() ? motion.vehicle : file), {});
+  return sim::load_vehicle(
+      experiment::file_by_name({experiment::ShippedKind::vehicle}, file.empty() ? motion.vehicle : file), {});
 }
 
 static void add_motion_command(CLI::App& app, int& exit_code) {

@@ -33,7 +33,7 @@ constexpr std::size_t max_plots = 40;
 struct CompareArguments {
   std::string first, second, png;
   double tolerance_deg = 0;
-  StageOptions stage;
+  motion::StageOptions stage;
 };
 
 /// Names of the joints of a motion by name and alias, from the file of its vehicle, if there is one.
@@ -59,10 +59,10 @@ std::string number(double value) {
   return value == 0 ? "0" : value < 0.001 ? fmt::format("{:.2g}", value) : fmt::format("{:.4f}", value);
 }
 
-void print_joints(const MotionDifference& difference) {
+void print_joints(const motion::MotionDifference& difference) {
   std::cout << fmt::format("{:<24} {:>10} {:>9} {:>10} {:>10}\n", "joint", "max deg", "at s", "rms deg", "first s");
   int equal = 0;
-  for (const JointDifference& joint : difference.joints) {
+  for (const motion::JointDifference& joint : difference.joints) {
     if (joint.max == 0) {
       ++equal;
       continue;
@@ -80,10 +80,10 @@ void print_joints(const MotionDifference& difference) {
 
 /// Draws the joints that differ, both motions in one plot each.
 void draw(const std::string& png, const sim::JointMotion& first, const sim::JointMotion& second,
-          const MotionDifference& difference, const std::function<std::string(const std::string&)>& name_of) {
-  const ScratchDirectory scratch;
+          const motion::MotionDifference& difference, const std::function<std::string(const std::string&)>& name_of) {
+  const experiment::ScratchDirectory scratch;
   std::vector<std::string> drawn;
-  for (const JointDifference& joint : difference.joints)
+  for (const motion::JointDifference& joint : difference.joints)
     if (joint.max > 0 && drawn.size() < max_plots) drawn.push_back(joint.joint);
   if (drawn.empty()) {
     std::cerr << png << ": not written, because no joint differs\n";
@@ -92,10 +92,10 @@ void draw(const std::string& png, const sim::JointMotion& first, const sim::Join
   std::string script = fmt::format(
       "set terminal pngcairo size 900,{}\nset output {}\nset datafile separator ','\nset multiplot layout {},1\n"
       "set xlabel 's'\nset key outside\n",
-      60 + 220 * drawn.size(), gnuplot_text(fs::absolute(png).string()), drawn.size());
+      60 + 220 * drawn.size(), experiment::gnuplot_text(fs::absolute(png).string()), drawn.size());
   const double end_s = std::max(difference.first_end_s, difference.second_end_s);
   for (std::size_t i = 0; i < drawn.size(); ++i) {
-    script += fmt::format("set ylabel {} noenhanced\nplot ", gnuplot_text(drawn[i] + ", deg"));
+    script += fmt::format("set ylabel {} noenhanced\nplot ", experiment::gnuplot_text(drawn[i] + ", deg"));
     for (const auto* motion : {&first, &second}) {
       const bool is_first = motion == &first;
       const std::string file = fmt::format("{}_{}.csv", is_first ? "first" : "second", i);
@@ -106,13 +106,13 @@ void draw(const std::string& png, const sim::JointMotion& first, const sim::Join
           for (const sim::TrackKey& key : frames.front().keys)
             out << key.at_s << ',' << key.value * deg_per_rad << '\n';
         }
-      script += fmt::format("{}{} with lines title '{}'", is_first ? "" : ", ", gnuplot_text(file),
+      script += fmt::format("{}{} with lines title '{}'", is_first ? "" : ", ", experiment::gnuplot_text(file),
                             is_first ? "first" : "second");
     }
     script += "\n";
   }
   std::ofstream(scratch.path / "plot.gp") << script << "unset multiplot\n";
-  if (run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(60), [] { return false; })) return;
+  if (experiment::run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(60), [] { return false; })) return;
   std::ifstream reported(scratch.path / "plot.log");
   throw std::runtime_error("gnuplot failed: " + std::string(std::istreambuf_iterator<char>(reported), {}));
 }
@@ -122,15 +122,15 @@ int compare(CompareArguments arguments) {
   if (!arguments.png.empty()) check_writable(arguments.png);
   try {
     const sim::JointMotion second =
-        arguments.second.empty() ? MotionHistory(arguments.first).previous() : motion_of(arguments.second);
+        arguments.second.empty() ? motion::MotionHistory(arguments.first).previous() : motion_of(arguments.second);
     const auto name_of = names_of(first, arguments.first);
     const double tolerance = arguments.tolerance_deg / deg_per_rad;
-    const MotionDifference difference = difference_of(first, second, tolerance, name_of);
+    const motion::MotionDifference difference = motion::difference_of(first, second, tolerance, name_of);
     print_joints(difference);
     if (!arguments.stage.world.empty()) {
-      arguments.stage.world = file_by_name({ShippedKind::world}, arguments.stage.world);
-      const CourseDifference body =
-          difference_of(course_of(arguments.stage, first), course_of(arguments.stage, second));
+      arguments.stage.world = experiment::file_by_name({experiment::ShippedKind::world}, arguments.stage.world);
+      const motion::CourseDifference body =
+          motion::difference_of(motion::course_of(arguments.stage, first), motion::course_of(arguments.stage, second));
       std::cout << fmt::format(
           "vehicle: greatest distance {:.2f} mm at {:.3f} s, rms {:.2f} mm, {:.2f} mm at the end at {:.3f} s\n",
           body.max_m * mm_per_m, body.max_at_s, body.rms_m * mm_per_m, body.end_m * mm_per_m, body.end_at_s);

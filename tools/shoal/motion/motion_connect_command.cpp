@@ -23,7 +23,7 @@ struct ConnectArguments {
   std::string from, to, world, vehicle, output;
   bool overwrite = false;
   sim::LoadOptions load;
-  ConnectOptions options;
+  motion::ConnectOptions options;
 };
 
 /// A pose or a motion that an argument names.
@@ -56,13 +56,13 @@ NamedEnd end_named(const std::string& text, const sim::VehicleConfig& vehicle) {
     const sim::MotionPose* pose = motion.find_pose(text.substr(colon + 1));
     if (pose == nullptr)
       throw sim::ConfigError({text.substr(0, colon) + ": there is no pose '" + text.substr(colon + 1) + "'"});
-    return {text, held_pose(pose->name, vehicle.vehicle, pose->joints)};
+    return {text, motion::held_pose(pose->name, vehicle.vehicle, pose->joints)};
   }
   std::vector<std::string> known;
   const std::vector<sim::JointMotion> motions = motions_of(vehicle);
   for (const sim::JointMotion& motion : motions)
     if (const sim::MotionPose* pose = motion.find_pose(text))
-      return {text, held_pose(pose->name, vehicle.vehicle, pose->joints)};
+      return {text, motion::held_pose(pose->name, vehicle.vehicle, pose->joints)};
   for (const sim::JointMotion& motion : motions) {
     if (motion.name == text) return {text, motion};
     known.push_back(motion.name);
@@ -74,23 +74,23 @@ NamedEnd end_named(const std::string& text, const sim::VehicleConfig& vehicle) {
                           vehicle.vehicle + "'; known: " + sim::list_text(known)});
 }
 
-std::string word_of(ConnectionKind kind) {
+std::string word_of(motion::ConnectionKind kind) {
   switch (kind) {
-    case ConnectionKind::straight:
+    case motion::ConnectionKind::straight:
       return "straight";
-    case ConnectionKind::slower:
+    case motion::ConnectionKind::slower:
       return "straight, slower";
-    case ConnectionKind::by_stance:
+    case motion::ConnectionKind::by_stance:
       return "by the stance at the start of the run";
-    case ConnectionKind::searched:
+    case motion::ConnectionKind::searched:
       return "by a pose that was searched";
-    case ConnectionKind::none:
+    case motion::ConnectionKind::none:
       break;
   }
   return "none";
 }
 
-std::string outcome(const Arrival& arrival) {
+std::string outcome(const motion::Arrival& arrival) {
   if (arrival.fell) return fmt::format("fell after {:.2f} s", arrival.at_s);
   return fmt::format("{}, {:.2f} deg from the end", arrival.arrived ? "arrived" : "did not arrive",
                      arrival.error * 180 / std::numbers::pi);
@@ -99,28 +99,29 @@ std::string outcome(const Arrival& arrival) {
 int connect(ConnectArguments arguments) {
   check_new_file(arguments.output, arguments.overwrite);
   arguments.load.encode_message = shoal::encode_own_message;
-  const sim::LoadedWorld loaded = sim::load_world(file_by_name({ShippedKind::world}, arguments.world), arguments.load);
-  const std::string vehicle = walking_vehicle(loaded.config, arguments.vehicle);
+  const sim::LoadedWorld loaded =
+      sim::load_world(experiment::file_by_name({experiment::ShippedKind::world}, arguments.world), arguments.load);
+  const std::string vehicle = motion::walking_vehicle(loaded.config, arguments.vehicle);
   const auto instance = std::find_if(loaded.config.vehicles.begin(), loaded.config.vehicles.end(),
                                      [&](const sim::VehicleInstance& one) { return one.name == vehicle; });
   const NamedEnd from = end_named(arguments.from, *instance->config), to = end_named(arguments.to, *instance->config);
-  Connector connector(loaded.config, vehicle, from.motion, arguments.options);
-  Connection connection = connector.connect(values_at(to.motion, 0));
+  motion::Connector connector(loaded.config, vehicle, from.motion, arguments.options);
+  motion::Connection connection = connector.connect(values_at(to.motion, 0));
   for (const std::size_t world : connection.left_out)
     sim::log_warn("perturbed world {} is left out: '{}' does not stand in it", world, from.name);
   // Print the worlds, then the result.
   for (std::size_t w = 0; w < connection.straight.size(); ++w)
     std::cout << fmt::format("world {:<3} straight: {}; best: {}\n", w, outcome(connection.straight[w]),
                              outcome(connection.arrivals[w]));
-  if (connection.kind == ConnectionKind::none) {
+  if (connection.kind == motion::ConnectionKind::none) {
     std::cout << fmt::format("no motion from {} to {} arrives in all {} worlds; {} motions played, nothing written\n",
                              from.name, to.name, connection.straight.size(), connection.played);
     return exit_failed;
   }
-  connection.motion.name = motion_name_of(arguments.output);
+  connection.motion.name = motion::motion_name_of(arguments.output);
   connection.motion.description = fmt::format("From {} to {}.", from.name, to.name);
   check_frames(arguments.output, connection.motion, arguments.overwrite);
-  write_motion(arguments.output, connection.motion);
+  motion::write_motion(arguments.output, connection.motion);
   std::cout << fmt::format("{}; {:.2f} s; {} motions played; written to {}\n", word_of(connection.kind),
                            connection.motion.end_s(), connection.played, arguments.output);
   return exit_ok;
@@ -131,7 +132,7 @@ int connect(ConnectArguments arguments) {
 void add_motion_connect_command(CLI::App& motion, int& exit_code) {
   CLI::App* command = motion.add_subcommand("connect", "Search for a motion from one pose to another without a fall");
   const auto arguments = std::make_shared<ConnectArguments>();
-  ConnectOptions& options = arguments->options;
+  motion::ConnectOptions& options = arguments->options;
   add_log_level_option(*command, "warn");
   command
       ->add_option("FROM", arguments->from,

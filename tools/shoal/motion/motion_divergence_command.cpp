@@ -19,29 +19,29 @@ struct DivergenceArguments {
   std::vector<std::string> files;
   std::string world, vehicle, csv;
   sim::LoadOptions load;
-  DivergenceOptions options;
+  motion::DivergenceOptions options;
 };
 
 struct NamedDivergence {
   std::string motion;
-  Divergence divergence;
+  motion::Divergence divergence;
 };
 
 /// Returns the row at a time, the last one if it is earlier.
-std::size_t row_at(const Divergence& divergence, double at_s) {
+std::size_t row_at(const motion::Divergence& divergence, double at_s) {
   return std::min(divergence.rows() - 1, static_cast<std::size_t>(at_s / divergence.row_s + 0.5));
 }
 
-std::string falls_of(const Divergence& divergence) {
+std::string falls_of(const motion::Divergence& divergence) {
   const auto falls = std::count_if(divergence.curves.begin(), divergence.curves.end(),
-                                   [](const DivergenceCurve& curve) { return curve.fell_s >= 0; });
+                                   [](const motion::DivergenceCurve& curve) { return curve.fell_s >= 0; });
   return fmt::format("{}{}", divergence.fell_s >= 0 ? "falls; " : "",
                      falls > 0 ? fmt::format("{} of {} models fall", falls, divergence.curves.size()) : "none fall");
 }
 
 /// Prints a row: distances to the farthest model at a sixth, a third, two thirds and the whole of the time.
 void print_row(const NamedDivergence& one, double duration_s) {
-  const Divergence& divergence = one.divergence;
+  const motion::Divergence& divergence = one.divergence;
   std::cout << fmt::format("{:<20} {:>9.1f}", one.motion, divergence.least_static_margin_m * mm);
   for (const double share : {1.0 / 6, 1.0 / 3, 2.0 / 3, 1.0})
     std::cout << fmt::format(" {:>9.1f}", divergence.greatest_m(row_at(divergence, share * duration_s)) * mm);
@@ -63,9 +63,10 @@ std::string csv_of(const std::vector<NamedDivergence>& all) {
 
 int divergence(DivergenceArguments arguments) {
   arguments.load.encode_message = shoal::encode_own_message;
-  const sim::LoadedWorld loaded = sim::load_world(file_by_name({ShippedKind::world}, arguments.world), arguments.load);
+  const sim::LoadedWorld loaded =
+      sim::load_world(experiment::file_by_name({experiment::ShippedKind::world}, arguments.world), arguments.load);
   if (!arguments.csv.empty()) check_writable(arguments.csv);
-  const std::string vehicle = walking_vehicle(loaded.config, arguments.vehicle);
+  const std::string vehicle = motion::walking_vehicle(loaded.config, arguments.vehicle);
   const double duration_s = arguments.options.duration_s;
   std::cout << fmt::format("{:<20} {:>9}", "motion", "static mm");
   for (const double share : {1.0 / 6, 1.0 / 3, 2.0 / 3, 1.0})
@@ -74,7 +75,7 @@ int divergence(DivergenceArguments arguments) {
   std::vector<NamedDivergence> all;
   for (const std::string& file : arguments.files) {
     const sim::JointMotion motion = motion_of(file);
-    all.push_back({motion.name, divergence_of(loaded.config, vehicle, motion, arguments.options)});
+    all.push_back({motion.name, motion::divergence_of(loaded.config, vehicle, motion, arguments.options)});
     print_row(all.back(), duration_s);
   }
   std::cout << "mm between the vehicle in the world and in the farthest of five models: mass 10 % more, less; efforts "

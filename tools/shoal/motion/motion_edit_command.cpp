@@ -21,7 +21,7 @@ namespace tools {
 
 namespace {
 
-constexpr double rad_per_deg = std::numbers::pi / 180;
+constexpr double motion::rad_per_deg = std::numbers::pi / 180;
 
 struct EditArguments {
   std::string file, output, other, vehicle, name;
@@ -39,8 +39,9 @@ std::string known_joint(const std::string& joint, const EditArguments& arguments
   for (const sim::MotionTrack& track : motion.tracks()) known.push_back(track.joint);
   const auto has = [&](const std::string& name) { return std::find(known.begin(), known.end(), name) != known.end(); };
   if (has(joint)) return joint;
-  const std::string file = arguments.vehicle.empty() ? vehicle_file_of(motion.vehicle, arguments.file)
-                                                     : file_by_name({ShippedKind::vehicle}, arguments.vehicle);
+  const std::string file = arguments.vehicle.empty()
+                               ? vehicle_file_of(motion.vehicle, arguments.file)
+                               : experiment::file_by_name({experiment::ShippedKind::vehicle}, arguments.vehicle);
   if (file.empty()) return joint;
   const sim::VehicleConfig vehicle = sim::load_vehicle(file);
   for (const devices::ServoOfVehicle& servo : devices::servos_of(vehicle)) {
@@ -84,15 +85,15 @@ int edit(const EditArguments& arguments, const Edit& change) {
         arguments.output.empty() || std::filesystem::equivalent(arguments.file, arguments.output, error);
     const std::string output = in_place ? arguments.file : arguments.output;
     if (!arguments.output.empty()) check_new_file(arguments.output, arguments.overwrite);
-    if (!in_place) changed.name = motion_name_of(output);
+    if (!in_place) changed.name = motion::motion_name_of(output);
     check_frames(output, changed, arguments.overwrite);
     if (in_place)
-      MotionHistory(arguments.file).replace(changed, arguments.operation);
+      motion::MotionHistory(arguments.file).replace(changed, arguments.operation);
     else
-      write_motion(output, changed);
+      motion::write_motion(output, changed);
     std::cout << fmt::format("{}: {}; before {}\n", output, content_text(changed), content_text(motion));
     return exit_ok;
-  } catch (const EditError& error) {
+  } catch (const motion::EditError& error) {
     throw command_line::UsageError(error.what());
   } catch (const sim::ConfigError&) {
     throw;
@@ -156,44 +157,46 @@ void add_vehicle(const EditCommands::Added& added) {
       ->type_name("FILE");
 }
 
-MirrorRule rule_for(const EditArguments& arguments, const sim::JointMotion& motion) {
-  return mirror_rule(vehicle_of(arguments.vehicle, motion));
+motion::MirrorRule rule_for(const EditArguments& arguments, const sim::JointMotion& motion) {
+  return motion::mirror_rule(vehicle_of(arguments.vehicle, motion));
 }
 
 void add_cuts(EditCommands& commands) {
   add_part(commands.add("trim", "Keep a part", "wave.yaml --from 0.5 --to 2",
-                        [](const auto& a, const auto& motion) { return trimmed(motion, a.from_s, a.to_s); }));
+                        [](const auto& a, const auto& motion) { return motion::trimmed(motion, a.from_s, a.to_s); }));
   add_part(commands.add("cut", "Remove a part", "wave.yaml --from 0.5 --to 2",
-                        [](const auto& a, const auto& motion) { return without(motion, a.from_s, a.to_s); }));
+                        [](const auto& a, const auto& motion) { return motion::without(motion, a.from_s, a.to_s); }));
 }
 
 void add_joining(EditCommands& commands) {
-  const auto append =
-      commands.add("append", "Add another motion behind it", "sit.yaml wave.yaml --gap 0.5",
-                   [](const auto& a, const auto& motion) { return appended(motion, motion_of(a.other), a.by); });
+  const auto append = commands.add(
+      "append", "Add another motion behind it", "sit.yaml wave.yaml --gap 0.5",
+      [](const auto& a, const auto& motion) { return motion::appended(motion, motion_of(a.other), a.by); });
   append.arguments.by = 0.5;
   append.command.add_option("OTHER", append.arguments.other, "motion file that is added")->required();
   append.command.add_option("--gap", append.arguments.by, "time between both, s; usual 0.5")
       ->type_name("S")
       ->check(time_s);
-  const auto merge =
-      commands.add("merge", "Add the joints of another motion", "legs.yaml head.yaml",
-                   [](const auto& a, const auto& motion) { return merged(motion, motion_of(a.other), a.replace); });
+  const auto merge = commands.add(
+      "merge", "Add the joints of another motion", "legs.yaml head.yaml",
+      [](const auto& a, const auto& motion) { return motion::merged(motion, motion_of(a.other), a.replace); });
   merge.command.add_option("OTHER", merge.arguments.other, "motion file whose joints are added")->required();
   merge.command.add_flag("--replace", merge.arguments.replace, "joints of both are those of OTHER");
 }
 
 void add_mirrors(EditCommands& commands) {
-  add_vehicle(commands.add("mirror", "Exchange left and right", "kick_left.yaml --output kick_right.yaml",
-                           [](const auto& a, const auto& motion) { return mirrored(motion, rule_for(a, motion)); }));
+  add_vehicle(
+      commands.add("mirror", "Exchange left and right", "kick_left.yaml --output kick_right.yaml",
+                   [](const auto& a, const auto& motion) { return motion::mirrored(motion, rule_for(a, motion)); }));
   add_vehicle(commands.add(
       "halfcycle", "Add the mirrored motion: half a cycle becomes a whole one", "step.yaml --output walk.yaml",
-      [](const auto& a, const auto& motion) { return with_mirrored_half(motion, rule_for(a, motion)); }));
+      [](const auto& a, const auto& motion) { return motion::with_mirrored_half(motion, rule_for(a, motion)); }));
 }
 
 void add_times(EditCommands& commands) {
-  const auto shift = commands.add("shift", "Move joints in time", "wave.yaml --by 0.2 --joints lf_knee",
-                                  [](const auto& a, const auto& motion) { return shifted(motion, a.by, a.joints); });
+  const auto shift =
+      commands.add("shift", "Move joints in time", "wave.yaml --by 0.2 --joints lf_knee",
+                   [](const auto& a, const auto& motion) { return motion::shifted(motion, a.by, a.joints); });
   shift.command.add_option("--by", shift.arguments.by, "time, s; negative: earlier")
       ->type_name("S")
       ->check(number_from(-sim::max_motion_s, sim::max_motion_s))
@@ -201,13 +204,14 @@ void add_times(EditCommands& commands) {
   command_line::add_name_list(shift.command, "--joints", shift.arguments.joints, "joints; unset: all")
       ->type_name("JOINT,...");
   const auto scale = commands.add("scale", "Make it slower or faster", "wave.yaml --by 2",
-                                  [](const auto& a, const auto& motion) { return stretched(motion, a.by); });
+                                  [](const auto& a, const auto& motion) { return motion::stretched(motion, a.by); });
   scale.command.add_option("--by", scale.arguments.by, "factor of all times; 2: half as fast")
       ->type_name("FACTOR")
       ->check(number_from(1e-6, 1e6))
       ->required();
-  const auto retime = commands.add("retime", "Move a key in time", "wave.yaml --at 0.5 --to 0.7",
-                                   [](const auto& a, const auto& motion) { return retimed(motion, a.at_s, a.to_s); });
+  const auto retime =
+      commands.add("retime", "Move a key in time", "wave.yaml --at 0.5 --to 0.7",
+                   [](const auto& a, const auto& motion) { return motion::retimed(motion, a.at_s, a.to_s); });
   retime.command.add_option("--at", retime.arguments.at_s, "time of the key, s")
       ->type_name("S")
       ->check(time_s)
@@ -220,27 +224,28 @@ void add_times(EditCommands& commands) {
 
 void add_values(EditCommands& commands) {
   const auto smooth = commands.add("smooth", "Round the corners", "wave.yaml --window 0.1",
-                                   [](const auto& a, const auto& motion) { return smoothed(motion, a.by); });
+                                   [](const auto& a, const auto& motion) { return motion::smoothed(motion, a.by); });
   smooth.command.add_option("--window", smooth.arguments.by, "time over which values are averaged, s")
       ->type_name("S")
       ->check(time_s)
       ->required();
-  const auto simplify =
-      commands.add("simplify", "Leave out keys", "recorded.yaml --tolerance 0.25",
-                   [](const auto& a, const auto& motion) { return simplified(motion, a.by * rad_per_deg); });
+  const auto simplify = commands.add(
+      "simplify", "Leave out keys", "recorded.yaml --tolerance 0.25",
+      [](const auto& a, const auto& motion) { return motion::simplified(motion, a.by * motion::rad_per_deg); });
   simplify.arguments.by = 0.25;
   simplify.command.add_option("--tolerance", simplify.arguments.by, "greatest change of a value, deg; usual 0.25")
       ->type_name("DEG")
       ->check(number_from(0, 360));
-  const auto set =
-      commands.add("set", "Set values of joints", "wave.yaml --at 0.5 lf_knee=40 rf_knee=40",
-                   [](const auto& a, const auto& motion) { return with_values(motion, a.at_s, values_of(a, motion)); });
+  const auto set = commands.add(
+      "set", "Set values of joints", "wave.yaml --at 0.5 lf_knee=40 rf_knee=40",
+      [](const auto& a, const auto& motion) { return motion::with_values(motion, a.at_s, values_of(a, motion)); });
   set.command.add_option("--at", set.arguments.at_s, "time, s")->type_name("S")->check(time_s)->required();
   set.command.add_option("VALUES", set.arguments.values, "JOINT=VALUE, in the unit of the file")->required();
   set.command.add_option("--vehicle", set.arguments.vehicle, "vehicle file with the joints; unset: that of the motion")
       ->type_name("FILE");
-  const auto pose = commands.add("pose", "Name the values at a time as a pose", "wave.yaml --at 1 --name stand",
-                                 [](const auto& a, const auto& motion) { return with_pose(motion, a.name, a.at_s); });
+  const auto pose =
+      commands.add("pose", "Name the values at a time as a pose", "wave.yaml --at 1 --name stand",
+                   [](const auto& a, const auto& motion) { return motion::with_pose(motion, a.name, a.at_s); });
   pose.command.add_option("--at", pose.arguments.at_s, "time, s")->type_name("S")->check(time_s)->required();
   pose.command.add_option("--name", pose.arguments.name, "name of the pose")->type_name("NAME")->required();
 }
@@ -255,7 +260,7 @@ std::string present_content(const std::string& file) {
 }
 
 void add_history(CLI::App& parent, int& exit_code, const std::string& name, const std::string& meaning,
-                 const std::string& done, std::string (MotionHistory::*go)() const) {
+                 const std::string& done, std::string (motion::MotionHistory::*go)() const) {
   CLI::App* command = parent.add_subcommand(name, meaning);
   const auto file = std::make_shared<std::string>();
   command->add_option("FILE", *file, "motion file")->required();
@@ -265,7 +270,7 @@ void add_history(CLI::App& parent, int& exit_code, const std::string& name, cons
   command->callback([file, done, go, &exit_code] {
     try {
       const std::string before = present_content(*file);
-      const std::string operation = (MotionHistory(*file).*go)();
+      const std::string operation = (motion::MotionHistory(*file).*go)();
       std::cout << fmt::format("{}: {} {}; now {}; before {}\n", *file, done,
                                operation.empty() ? "the last change" : "'" + sim::printable(operation) + "'",
                                present_content(*file), before);
@@ -291,8 +296,9 @@ void add_motion_edit_command(CLI::App& motion, int& exit_code) {
   add_mirrors(commands);
   add_times(commands);
   add_values(commands);
-  add_history(*command, exit_code, "undo", "Take back the last edit", "took back", &MotionHistory::undo);
-  add_history(*command, exit_code, "redo", "Do an edit again that was taken back", "did again", &MotionHistory::redo);
+  add_history(*command, exit_code, "undo", "Take back the last edit", "took back", &motion::MotionHistory::undo);
+  add_history(*command, exit_code, "redo", "Do an edit again that was taken back", "did again",
+              &motion::MotionHistory::redo);
   command_line::set_help_end(*command, {{"shoal motion edit trim wave.yaml --from 0.5 --to 2",
                                          "shoal motion edit mirror kick_left.yaml --output kick_right.yaml",
                                          "shoal motion edit undo wave.yaml"},

@@ -23,7 +23,7 @@ namespace {
 constexpr const char* free_keys = "free_keys";
 
 std::vector<std::string> gait_choices() {
-  std::vector<std::string> names = gait_names();
+  std::vector<std::string> names = motion::gait_names();
   names.emplace_back(free_keys);
   return names;
 }
@@ -31,7 +31,7 @@ std::vector<std::string> gait_choices() {
 struct EvolveArguments {
   std::string world, vehicle, gait = "half_ellipse", motion, method = "cma_es", output, page;
   sim::LoadOptions load;
-  EvolveOptions options;
+  motion::EvolveOptions options;
   int fresh = 20;
   bool overwrite = false;
 };
@@ -42,10 +42,10 @@ std::string in_worlds(std::size_t count) {
 }
 
 /// Writes the best gait, with its numbers.
-void write_best(const EvolveArguments& arguments, const GaitFamily& gait, const Evolution& evolution) {
-  const Candidate& best = evolution.best();
+void write_best(const EvolveArguments& arguments, const motion::GaitFamily& gait, const motion::Evolution& evolution) {
+  const motion::Candidate& best = evolution.best();
   sim::JointMotion motion = gait.motion(best.values);
-  motion.name = motion_name_of(arguments.output);
+  motion.name = motion::motion_name_of(arguments.output);
   motion.description =
       fmt::format("Gait {} of seed {}, candidate {}: {:.0f} mm/s {};", arguments.gait, arguments.options.seed,
                   best.number, best.value_mps * mm, in_worlds(best.walks.size()));
@@ -53,11 +53,11 @@ void write_best(const EvolveArguments& arguments, const GaitFamily& gait, const 
     motion.description +=
         fmt::format(" {} {:.4g}{}", gait.numbers()[i].name, best.values[i], i + 1 < best.values.size() ? "," : ".");
   check_frames(arguments.output, motion, arguments.overwrite);
-  write_motion(arguments.output, motion);
+  motion::write_motion(arguments.output, motion);
 }
 
 /// Row of a table: how the best gait walks in a world.
-std::vector<std::string> row(const std::string& name, const Perturbation& world, const Walk& walk) {
+std::vector<std::string> row(const std::string& name, const motion::Perturbation& world, const motion::Walk& walk) {
   const auto speed = [&](double mps) { return walk.fell ? std::string("-") : fmt::format("{:.1f}", mps * mm); };
   return {name,
           world.friction ? fmt::format("{:.2f}", *world.friction) : "file",
@@ -78,19 +78,20 @@ std::string text_of(const std::vector<std::string>& cells) {
 }
 
 /// Lets the best gait walk in all worlds, and prints the result.
-EvolveReport print_result(const EvolveArguments& arguments, const GaitFamily& gait, Evolution& evolution) {
-  const Candidate& best = evolution.best();
-  EvolveReport report;
+motion::EvolveReport print_result(const EvolveArguments& arguments, const motion::GaitFamily& gait,
+                                  motion::Evolution& evolution) {
+  const motion::Candidate& best = evolution.best();
+  motion::EvolveReport report;
   report.world_head = {"world",     "friction", "mass", "effort",    "1/kp + ms",
                        "ground mm", "step",     "mm/s", "left mm/s", "fall"};
   for (std::size_t w = 0; w < best.walks.size(); ++w)
     report.worlds.push_back(row(std::to_string(w + 1), evolution.perturbations()[w], *best.walks[w]));
-  const std::vector<Perturbation> as_it_is(1);
+  const std::vector<motion::Perturbation> as_it_is(1);
   report.worlds.push_back(row("as it is", as_it_is.front(), evolution.walks_of_best(as_it_is).front()));
   std::string fresh;
   if (arguments.fresh > 0) {
-    const auto worlds = drawn_perturbations(arguments.fresh, arguments.options.seed, "evolve/fresh_worlds");
-    const std::vector<Walk> walks = evolution.walks_of_best(worlds);
+    const auto worlds = motion::drawn_perturbations(arguments.fresh, arguments.options.seed, "evolve/fresh_worlds");
+    const std::vector<motion::Walk> walks = evolution.walks_of_best(worlds);
     double worst_mps = 1e9;
     int falls = 0;
     for (std::size_t i = 0; i < walks.size(); ++i) {
@@ -123,11 +124,11 @@ EvolveReport print_result(const EvolveArguments& arguments, const GaitFamily& ga
   return report;
 }
 
-std::unique_ptr<GaitFamily> gait_of(const EvolveArguments& arguments, const sim::VehicleConfig& vehicle) {
+std::unique_ptr<motion::GaitFamily> gait_of(const EvolveArguments& arguments, const sim::VehicleConfig& vehicle) {
   if ((arguments.gait == free_keys) == arguments.motion.empty())
     throw command_line::UsageError("--motion FILE and --gait free_keys need each other");
-  if (arguments.gait == free_keys) return std::make_unique<FreeKeys>(motion_of(arguments.motion), vehicle);
-  return make_gait(arguments.gait, vehicle);
+  if (arguments.gait == free_keys) return std::make_unique<motion::FreeKeys>(motion_of(arguments.motion), vehicle);
+  return motion::make_gait(arguments.gait, vehicle);
 }
 
 /// Throws UsageError or std::runtime_error when the page cannot be written.
@@ -142,7 +143,7 @@ void check_page(const EvolveArguments& arguments) {
   if (!arguments.overwrite && fs::exists(page, error))
     throw command_line::UsageError("'" + arguments.page + "' exists; --overwrite replaces it");
   check_writable(arguments.page);
-  check_whole_file(arguments.page);
+  experiment::check_whole_file(arguments.page);
 }
 
 int evolve(EvolveArguments arguments) {
@@ -152,33 +153,35 @@ int evolve(EvolveArguments arguments) {
   check_new_file(arguments.output, arguments.overwrite);
   if (!arguments.page.empty()) check_page(arguments);
   arguments.load.encode_message = shoal::encode_own_message;
-  const sim::LoadedWorld loaded = sim::load_world(file_by_name({ShippedKind::world}, arguments.world), arguments.load);
-  const std::string vehicle = walking_vehicle(loaded.config, arguments.vehicle);
+  const sim::LoadedWorld loaded =
+      sim::load_world(experiment::file_by_name({experiment::ShippedKind::world}, arguments.world), arguments.load);
+  const std::string vehicle = motion::walking_vehicle(loaded.config, arguments.vehicle);
   const auto instance = std::find_if(loaded.config.vehicles.begin(), loaded.config.vehicles.end(),
                                      [&](const sim::VehicleInstance& one) { return one.name == vehicle; });
-  const std::unique_ptr<GaitFamily> gait = gait_of(arguments, *instance->config);
+  const std::unique_ptr<motion::GaitFamily> gait = gait_of(arguments, *instance->config);
   std::vector<double> start;
-  for (const GaitNumber& number : gait->numbers()) start.push_back(number.start);
+  for (const motion::GaitNumber& number : gait->numbers()) start.push_back(number.start);
   check_frames(arguments.output, gait->motion(start), arguments.overwrite);
-  arguments.options.method = arguments.method == "genetic" ? SearchMethod::genetic : SearchMethod::cma_es;
-  Evolution evolution(loaded.config, vehicle, *gait, arguments.options);
+  arguments.options.method =
+      arguments.method == "genetic" ? motion::SearchMethod::genetic : motion::SearchMethod::cma_es;
+  motion::Evolution evolution(loaded.config, vehicle, *gait, arguments.options);
   sim::log_info("start of the search: {:.1f} mm/s {}", evolution.start().value_mps * mm,
                 in_worlds(evolution.perturbations().size()));
   write_best(arguments, *gait, evolution);
   const double start_mps = evolution.start().value_mps;
-  std::vector<EvolveGeneration> generations{{0, start_mps, start_mps}};
+  std::vector<motion::EvolveGeneration> generations{{0, start_mps, start_mps}};
   while (evolution.advance()) {
-    const Candidate& of_generation = evolution.best_of_generation();
+    const motion::Candidate& of_generation = evolution.best_of_generation();
     generations.push_back({evolution.tried(), evolution.best().value_mps, of_generation.value_mps});
     if (evolution.best().number == of_generation.number) write_best(arguments, *gait, evolution);
     sim::log_info("{} of {} candidates: best {:.1f} mm/s in the worst world, of this generation {:.1f} mm/s",
                   evolution.tried(), arguments.options.candidates, evolution.best().value_mps * mm,
                   of_generation.value_mps * mm);
   }
-  EvolveReport report = print_result(arguments, *gait, evolution);
-  report.title = "Search for a gait: " + motion_name_of(arguments.output);
+  motion::EvolveReport report = print_result(arguments, *gait, evolution);
+  report.title = "Search for a gait: " + motion::motion_name_of(arguments.output);
   report.generations = std::move(generations);
-  if (!arguments.page.empty()) write_whole_file(arguments.page, evolve_page(report));
+  if (!arguments.page.empty()) experiment::write_whole_file(arguments.page, motion::evolve_page(report));
   return evolution.best().fell() ? exit_failed : exit_ok;
 }
 
@@ -187,7 +190,7 @@ int evolve(EvolveArguments arguments) {
 void add_motion_evolve_command(CLI::App& motion, int& exit_code) {
   CLI::App* command = motion.add_subcommand("evolve", "Search for a gait that is fast in perturbed worlds");
   const auto arguments = std::make_shared<EvolveArguments>();
-  EvolveOptions& options = arguments->options;
+  motion::EvolveOptions& options = arguments->options;
   add_log_level_option(*command);
   add_stage_options(*command, arguments->world, arguments->vehicle);
   command->add_option("--gait", arguments->gait, "gait family; usual half_ellipse")

@@ -19,43 +19,44 @@ struct ExportArguments : FormatArguments {
   std::string skill;
 };
 
-const MotionFormat& format_of(const ExportArguments& arguments) {
-  const MotionFormat* const format =
-      arguments.format.empty() ? motion_format_of_file(arguments.output, "") : find_motion_format(arguments.format);
+const motion::MotionFormat& format_of(const ExportArguments& arguments) {
+  const motion::MotionFormat* const format = arguments.format.empty()
+                                                 ? motion::motion_format_of_file(arguments.output, "")
+                                                 : motion::find_motion_format(arguments.format);
   if (format == nullptr)
     throw CLI::ValidationError("--format", "is needed, because '" + arguments.output + "' has the ending of no format");
   return *format;
 }
 
 /// Throws when the folder of an export cannot be made, or has one of its files without --overwrite.
-void check_folder(const ExportArguments& arguments, const std::vector<ExportedFile>& files) {
+void check_folder(const ExportArguments& arguments, const std::vector<motion::ExportedFile>& files) {
   std::error_code error;
   std::filesystem::create_directories(arguments.output, error);
   if (!std::filesystem::is_directory(arguments.output, error))
     throw CLI::ValidationError("--output",
                                "must be a folder for this format, and '" + arguments.output + "' cannot be made");
-  for (const ExportedFile& file : files) check_output(arguments, arguments.output + "/" + file.name);
+  for (const motion::ExportedFile& file : files) check_output(arguments, arguments.output + "/" + file.name);
 }
 
 int export_motion(ExportArguments& arguments) {
-  const MotionFormat& format = format_of(arguments);
+  const motion::MotionFormat& format = format_of(arguments);
   if (format.write_folder == nullptr) check_output(arguments, arguments.output);
   const sim::JointMotion motion = sim::load_motion(arguments.input);
-  const JointNames names = names_for(arguments, motion.vehicle);
-  FormatOptions& options = arguments.options;
+  const motion::JointNames names = names_for(arguments, motion.vehicle);
+  motion::FormatOptions& options = arguments.options;
   options.loop_step_s = arguments.loop_step_ms / 1000;
   options.row_s = arguments.row_ms / 1000;
   if (arguments.has_instant) options.at_s = arguments.at_s;
   if (!arguments.skill.empty())
-    options.skill = arguments.skill == "posture" ? SkillKind::posture
-                    : arguments.skill == "gait"  ? SkillKind::gait
-                                                 : SkillKind::behavior;
-  Losses losses;
-  const std::vector<ExportedFile> files = files_of_motion(format, motion, names, options, losses);
+    options.skill = arguments.skill == "posture" ? motion::SkillKind::posture
+                    : arguments.skill == "gait"  ? motion::SkillKind::gait
+                                                 : motion::SkillKind::behavior;
+  motion::Losses losses;
+  const std::vector<motion::ExportedFile> files = motion::files_of_motion(format, motion, names, options, losses);
   if (!may_lose(arguments, losses)) return exit_failed;
   if (format.write_folder != nullptr) check_folder(arguments, files);
   std::size_t bytes = 0;
-  for (const ExportedFile& file : files) {
+  for (const motion::ExportedFile& file : files) {
     write_bytes(file.name.empty() ? arguments.output : arguments.output + "/" + file.name, file.bytes);
     bytes += file.bytes.size();
   }

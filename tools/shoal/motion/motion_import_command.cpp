@@ -30,16 +30,17 @@ std::string bytes_of(const std::string& path, std::uintmax_t max_mb) {
   }
 }
 
-const MotionFormat& format_of(const FormatArguments& arguments, const std::string& bytes) {
-  const MotionFormat* const format =
-      arguments.format.empty() ? motion_format_of_file(arguments.input, bytes) : find_motion_format(arguments.format);
+const motion::MotionFormat& format_of(const FormatArguments& arguments, const std::string& bytes) {
+  const motion::MotionFormat* const format = arguments.format.empty()
+                                                 ? motion::motion_format_of_file(arguments.input, bytes)
+                                                 : motion::find_motion_format(arguments.format);
   if (format == nullptr)
     throw CLI::ValidationError("--format", "is needed, because '" + arguments.input + "' shows no format");
   return *format;
 }
 
 /// Moves the keys of a long motion into frames, which are in their own file.
-void make_frames_of_many_keys(sim::JointMotion& motion, Losses& losses) {
+void make_frames_of_many_keys(sim::JointMotion& motion, motion::Losses& losses) {
   std::size_t values = 0;
   bool has_notes = false, is_linear = motion.ease == sim::Easing::linear;
   for (const sim::MotionKey& key : motion.keys) {
@@ -72,24 +73,24 @@ void write_frames(const FormatArguments& arguments, const std::vector<sim::Motio
 int import_motion(FormatArguments& arguments) {
   check_output(arguments, arguments.output);
   const std::string bytes = bytes_of(arguments.input, max_file_mb);
-  const MotionFormat& format = format_of(arguments, bytes);
-  const JointNames names = names_for(arguments, "");
+  const motion::MotionFormat& format = format_of(arguments, bytes);
+  const motion::JointNames names = names_for(arguments, "");
   arguments.options.loop_step_s = arguments.loop_step_ms / 1000;
   arguments.options.row_s = arguments.row_ms / 1000;
   const fs::path folder = fs::path(arguments.input).parent_path();
   const auto read_other = [&](const std::string& name) {
     return sim::whole_file<std::runtime_error>((folder / name).string(), max_other_file_mb);
   };
-  Losses losses;
+  motion::Losses losses;
   sim::JointMotion motion =
-      motion_of_bytes(format, {bytes, arguments.input, names, arguments.options, read_other}, losses);
+      motion::motion_of_bytes(format, {bytes, arguments.input, names, arguments.options, read_other}, losses);
   make_frames_of_many_keys(motion, losses);
   if (!may_lose(arguments, losses)) return exit_failed;
   if (!motion.frames.empty())
     motion.frames_file = fs::path(arguments.output).replace_extension(".csv").filename().string();
   try {
-    check_readable(arguments.output, motion);
-  } catch (const EditError& error) {
+    motion::check_readable(arguments.output, motion);
+  } catch (const motion::EditError& error) {
     throw sim::ConfigError({error.what()});
   }
   if (!motion.frames.empty()) write_frames(arguments, motion.frames);

@@ -34,17 +34,17 @@ void check_new_file(const std::string& path, bool overwrite) {
   check_writable(path);
   if (std::filesystem::path(path).extension() == ".csv")
     throw command_line::UsageError("'" + path + "' must not end in .csv: that is the file of the frames of a motion");
-  check_whole_file(path);
+  experiment::check_whole_file(path);
 }
 
 void check_frames(const std::string& path, const sim::JointMotion& motion, bool overwrite) {
-  const std::string frames = foreign_frames(path, motion);
+  const std::string frames = motion::foreign_frames(path, motion);
   refuse(frames, path, overwrite);
-  if (!frames.empty()) check_whole_file(frames);
+  if (!frames.empty()) experiment::check_whole_file(frames);
 }
 
 void check_frames(const std::string& path, bool overwrite) {
-  refuse(foreign_frames(path), path, overwrite);
+  refuse(motion::foreign_frames(path), path, overwrite);
 }
 
 std::string operation_of(const CLI::App& command) {

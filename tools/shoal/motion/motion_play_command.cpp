@@ -26,8 +26,8 @@ constexpr double usual_loop_s = 10;
 
 struct PlayArguments {
   std::string file;
-  StageOptions stage;
-  ViewOptions view;
+  motion::StageOptions stage;
+  experiment::ViewOptions view;
   std::optional<double> again_from_s, loop_s, rate;
   double settle_s = 1;
   bool loop = false, with_page = false, open = false;
@@ -35,7 +35,7 @@ struct PlayArguments {
 };
 
 /// Prints whether the state at the end is that of the recording; returns false when it should be and is not.
-bool report_recording(const sim::MotionOrigin& origin, std::uint64_t hash, const StageOptions& stage,
+bool report_recording(const sim::MotionOrigin& origin, std::uint64_t hash, const motion::StageOptions& stage,
                       const std::string& world) {
   if (origin.world != world) {
     std::cout << fmt::format("recorded in world '{}', so that the states at the end are not compared\n",
@@ -54,7 +54,7 @@ bool report_recording(const sim::MotionOrigin& origin, std::uint64_t hash, const
 }
 
 /// Where the player is.
-std::string phase_text(const MotionStage& stage) {
+std::string phase_text(const motion::MotionStage& stage) {
   using Phase = devices::MotionPlayer::Phase;
   switch (stage.player().phase()) {
     case Phase::approach:
@@ -69,14 +69,14 @@ std::string phase_text(const MotionStage& stage) {
 }
 
 /// Sets the world that the command line names, else that in the take, and prints which of them it is.
-void choose_world(StageOptions& stage, const sim::JointMotion& motion, const std::string& file) {
+void choose_world(motion::StageOptions& stage, const sim::JointMotion& motion, const std::string& file) {
   if (stage.world.empty()) {
-    if (!use_embedded_world(stage, motion, file))
+    if (!motion::use_embedded_world(stage, motion, file))
       throw command_line::UsageError("needs --world: '" + file + "' holds no world (motion record --embed)");
     std::cout << "world: the one embedded in " << file << '\n';
     return;
   }
-  stage.world = file_by_name({ShippedKind::world}, stage.world);
+  stage.world = experiment::file_by_name({experiment::ShippedKind::world}, stage.world);
   if (motion.recorded && motion.recorded->embedded_world.kind != sim::ConfigNode::Kind::null)
     std::cout << "world: " << stage.world << ", not the embedded one\n";
 }
@@ -97,7 +97,7 @@ void check_times(const PlayArguments& arguments, const sim::JointMotion& motion)
 }
 
 /// Plays again from an instant of the motion, by the last snapshot before it; returns whether the end is the same.
-bool play_again(MotionStage& stage, const PlayArguments& arguments) {
+bool play_again(motion::MotionStage& stage, const PlayArguments& arguments) {
   const std::uint64_t hash = stage.state_hash();
   const double end_s = stage.now_s();
   stage.after_step = {};
@@ -116,7 +116,7 @@ bool play_again(MotionStage& stage, const PlayArguments& arguments) {
 }
 
 /// Prints whether the motion ends as its recording, if it is one; returns false when it should and does not.
-bool check_recording(const sim::JointMotion& motion, MotionStage& stage, std::uint64_t end_hash,
+bool check_recording(const sim::JointMotion& motion, motion::MotionStage& stage, std::uint64_t end_hash,
                      const PlayArguments& arguments) {
   if (!motion.recorded || motion.recorded->state_hash.empty()) return true;
   if (arguments.is_part() || arguments.loop) {
@@ -139,20 +139,20 @@ int play(PlayArguments arguments) {
   choose_world(arguments.stage, motion, arguments.file);
   arguments.stage.scores = arguments.with_page;
   if (arguments.loop) arguments.stage.play.repeat = -1;
-  MotionStage stage(arguments.stage, motion);
-  MotionTracking tracking;
+  motion::MotionStage stage(arguments.stage, motion);
+  motion::MotionTracking tracking;
   std::int64_t tracked_step = 0;
-  stage.after_step = [&](MotionStage& now) {
+  stage.after_step = [&](motion::MotionStage& now) {
     if (now.world().step_number() <= tracked_step) return;  // a page went back
     tracked_step = now.world().step_number();
     tracking.add(now);
   };
   // Show it.
-  Browser browser;
+  experiment::Browser browser;
   if (arguments.open) arguments.view.opened = [&browser](const std::string& url) { browser.open(url); };
   std::optional<PlayView> view;
   if (arguments.with_page) {
-    catch_signals(false);
+    experiment::catch_signals(false);
     view.emplace(arguments.view, stage, arguments.rate.value_or(1));
     std::cerr << "live page: " << view->url() << "\nthe motion starts when the page is open; Ctrl-C ends it\n";
   }
@@ -160,7 +160,7 @@ int play(PlayArguments arguments) {
   const auto goes_on = [&] { return !(is_cut = view && !view->goes_on()); };
   // Play it to its end, then let it settle.
   const double loop_s = arguments.loop_s.value_or(view ? std::numeric_limits<double>::infinity() : usual_loop_s);
-  const double max_s = loops ? loop_s : end_limit_s(motion);
+  const double max_s = loops ? loop_s : motion::end_limit_s(motion);
   const auto is_playing = [&] { return stage.player().phase() != devices::MotionPlayer::Phase::idle; };
   while (is_playing() && stage.now_s() < max_s && goes_on()) stage.play_step();
   const std::uint64_t end_hash = stage.state_hash();
@@ -169,7 +169,7 @@ int play(PlayArguments arguments) {
     std::cout << tracking.text(motion);
     std::cout << (is_cut ? fmt::format("ended after {:.3f} s: {}\n", played_s, phase_text(stage))
                          : fmt::format("the motion has not ended after {:.3f} s: {}\n", played_s, phase_text(stage)));
-    return is_cut ? 128 + caught_signal() : exit_failed;
+    return is_cut ? 128 + experiment::caught_signal() : exit_failed;
   }
   const double until_s = loops ? std::min(max_s, played_s + arguments.settle_s) : played_s + arguments.settle_s;
   while (stage.now_s() < until_s - 1e-9 && goes_on()) stage.play_step();
@@ -177,7 +177,7 @@ int play(PlayArguments arguments) {
   std::cout << tracking.text(motion);
   if (is_cut) {
     std::cout << fmt::format("ended after {:.3f} s: while it settled\n", stage.now_s());
-    return 128 + caught_signal();
+    return 128 + experiment::caught_signal();
   }
   std::cout << fmt::format("{:.3f} s simulated, state hash at the end of the motion {:016x}\n", played_s, end_hash);
   if (stage.now_s() > played_s)

@@ -34,9 +34,9 @@ BoundAction action_of(const std::string& text) {
   if (equals == std::string::npos || equals == 0)
     throw command_line::UsageError("--on must be KEY=ACTION, got '" + sim::shortened(sim::printable(text)) + "'");
   const std::string key = text.substr(0, equals);
-  if (!is_key_name(key))
+  if (!motion::is_key_name(key))
     throw command_line::UsageError("--on: '" + sim::shortened(sim::printable(key)) +
-                                   "' is not a key; known: a character, " + key_words);
+                                   "' is not a key; known: a character, " + motion::key_words);
   sim::Diagnostics diagnostics;
   sim::ConfigNode action = sim::parse_config_text(text.substr(equals + 1), "--on " + key, diagnostics);
   diagnostics.throw_if_any();
@@ -68,7 +68,7 @@ std::vector<BoundAction> actions_of(const std::vector<std::string>& texts) {
 /// motion over which it records are.
 void check_files(const RecordArguments& arguments, bool is_over) {
   if (arguments.overwrite) return;
-  const std::string take = take_path(arguments.file);
+  const std::string take = motion::take_path(arguments.file);
   if (!is_over && fs::exists(arguments.file))
     throw command_line::UsageError("'" + arguments.file +
                                    "' exists: record over it with --overdub or --punch-in, continue at its end with "
@@ -80,14 +80,14 @@ void check_files(const RecordArguments& arguments, bool is_over) {
       return false;
     }
   };
-  if (fs::exists(take) && (!is_over || !is_recording()))
+  if (fs::exists(take) && (!is_over || !motion::is_recording()))
     throw command_line::UsageError("'" + take + "' exists" + (is_over ? " and is not a recording" : "") +
                                    "; --overwrite replaces it");
   for (const std::string& file : {arguments.file, take}) check_frames(file, false);
 }
 
 /// Throws ConfigError when a journal names joints that its vehicle, if that is known, does not have.
-void check_joints(const TakeSettings& settings, const std::string& file) {
+void check_joints(const motion::TakeSettings& settings, const std::string& file) {
   const std::string vehicle_file = vehicle_file_of(settings.model, file);
   if (vehicle_file.empty()) return;
   const sim::VehicleConfig vehicle = sim::load_vehicle(vehicle_file);
@@ -96,17 +96,17 @@ void check_joints(const TakeSettings& settings, const std::string& file) {
   for (const devices::ServoOfVehicle& servo : servos) known.push_back(servo.device);
   for (const std::string& joint : settings.joints)
     if (std::none_of(servos.begin(), servos.end(), [&](const auto& servo) { return servo.is_called(joint); }))
-      throw sim::ConfigError({journal_path(file) + ":2: joint '" + sim::shortened(sim::printable(joint)) +
+      throw sim::ConfigError({motion::journal_path(file) + ":2: joint '" + sim::shortened(sim::printable(joint)) +
                               "' is not a servo of vehicle '" + settings.model + "'" + sim::did_you_mean(joint, known) +
                               "; known: " + sim::list_text(known)});
 }
 
 /// Saves a recording that its program could not end.  Returns whether there was one.
 bool recover(const std::string& file) {
-  const std::optional<RecoveredTake> recovered = read_journal(file);
+  const std::optional<motion::RecoveredTake> recovered = motion::read_journal(file);
   if (!recovered) return false;
   check_joints(recovered->take.settings, file);
-  const SavedTake saved = save_take(file, *recovered, "", "record --recover");
+  const motion::SavedTake saved = motion::save_take(file, *recovered, "", "record --recover");
   const double end_s = static_cast<double>(recovered->take.frame_count() - 1) * recovered->take.settings.frame_s;
   std::cerr << fmt::format("{}: recovered a recording of {:.3f} s\n", file, end_s);
   if (recovered->damage)
@@ -116,7 +116,7 @@ bool recover(const std::string& file) {
 }
 
 /// Throws command_line::UsageError for times at which nothing would be recorded.
-void check_times(const RecordArguments& arguments, const RecordOptions& options) {
+void check_times(const RecordArguments& arguments, const motion::RecordOptions& options) {
   if (!arguments.duration_s) return;
   const auto error = [&](const std::string& rule) {
     return command_line::UsageError("--duration must be " + rule + ", got " + sim::number_text(*arguments.duration_s));
@@ -129,12 +129,12 @@ void check_times(const RecordArguments& arguments, const RecordOptions& options)
                 (options.to_s ? "the motion, to which it is played after --punch-out" : "a motion that loops"));
 }
 
-RecordOptions options_of(const RecordArguments& arguments) {
-  RecordOptions options;
+motion::RecordOptions options_of(const RecordArguments& arguments) {
+  motion::RecordOptions options;
   options.stage = arguments.stage;
-  options.stage.world = file_by_name({ShippedKind::world}, arguments.stage.world);
+  options.stage.world = experiment::file_by_name({experiment::ShippedKind::world}, arguments.stage.world);
   options.stage.scores = arguments.with_page;
-  options.name = motion_name_of(arguments.file);
+  options.name = motion::motion_name_of(arguments.file);
   options.joints = arguments.overdub;
   options.from_s = arguments.from_s;
   options.to_s = arguments.to_s;
@@ -151,7 +151,7 @@ RecordOptions options_of(const RecordArguments& arguments) {
 }
 
 int record(RecordArguments arguments) {
-  Browser browser;
+  experiment::Browser browser;
   if (arguments.open) arguments.view.opened = [&browser](const std::string& url) { browser.open(url); };
   try {
     const bool was_recovered = recover(arguments.file);
@@ -160,22 +160,23 @@ int record(RecordArguments arguments) {
       return was_recovered ? exit_ok : exit_bus;
     }
     if (arguments.stage.world.empty()) throw command_line::UsageError("needs --world");
-    const RecordOptions options = options_of(arguments);
+    const motion::RecordOptions options = options_of(arguments);
     const std::vector<BoundAction> actions = actions_of(arguments.actions);
-    catch_signals(false);
+    experiment::catch_signals(false);
     int exit_code = exit_ok;
     std::string hash;
     std::optional<double> unused_s;  ///< time of the end when nothing was recorded
     sim::ConfigNode embedded;
     {
-      MotionRecorder recorder(options, journal_path(arguments.file));
+      motion::MotionRecorder recorder(options, motion::journal_path(arguments.file));
       try {
-        if (arguments.embed) embedded = embeddable_world(recorder.stage().resolved_world(), recorder.settings().world);
+        if (arguments.embed)
+          embedded = motion::embeddable_world(recorder.stage().resolved_world(), recorder.settings().world);
         RecordSession session(arguments, recorder, actions);
         exit_code = session.run();
       } catch (...) {
         // Nothing was recorded when there is no input.
-        if (recorder.now_s() <= recorder.frame_s()) fs::remove(journal_path(arguments.file));
+        if (recorder.now_s() <= recorder.frame_s()) fs::remove(motion::journal_path(arguments.file));
         throw;
       }
       if (options.from_s && recorder.now_s() < *options.from_s)
@@ -184,20 +185,21 @@ int record(RecordArguments arguments) {
         hash = fmt::format("{:016x}", recorder.finish());
     }
     if (unused_s) {
-      fs::remove(journal_path(arguments.file));
+      fs::remove(motion::journal_path(arguments.file));
       std::cerr << fmt::format(
           "{}: ended at {:.3f} s, before {:.3f} s where the recording starts: nothing was recorded\n", arguments.file,
           *unused_s, *options.from_s);
       return exit_code;
     }
     const bool loops = options.over && options.over->loop;
-    const std::optional<RecoveredTake> recorded = read_journal(arguments.file);
-    if (!recorded) throw std::runtime_error("'" + journal_path(arguments.file) + "' is gone");
-    const sim::JointMotion motion = save_take(arguments.file, *recorded, loops ? "" : hash, arguments.operation).motion;
-    if (arguments.embed) embed_world(take_path(arguments.file), embedded);
+    const std::optional<motion::RecoveredTake> recorded = motion::read_journal(arguments.file);
+    if (!recorded) throw std::runtime_error("'" + motion::journal_path(arguments.file) + "' is gone");
+    const sim::JointMotion motion =
+        motion::save_take(arguments.file, *recorded, loops ? "" : hash, arguments.operation).motion;
+    if (arguments.embed) motion::embed_world(motion::take_path(arguments.file), embedded);
     std::cout << fmt::format("{}: {:.3f} s, {} joints, {} keys; each frame is in {}\nstate hash at the end {}\n",
                              arguments.file, motion.end_s(), motion.tracks().size(), motion.keys.size(),
-                             take_path(arguments.file), hash);
+                             motion::take_path(arguments.file), hash);
     return exit_code;
   } catch (const sim::ConfigError&) {
     throw;

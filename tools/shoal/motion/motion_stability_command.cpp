@@ -18,8 +18,8 @@ namespace {
 
 struct StabilityArguments {
   std::vector<std::string> files;
-  StageOptions stage;
-  PushOptions push;
+  motion::StageOptions stage;
+  motion::PushOptions push;
   double every_s = 0, marginal_mps = 0.1, stable_mps = 0.4;
 };
 
@@ -37,7 +37,7 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// A motion that was played once, with the margins of each step.
 struct PlayedMotion {
-  std::unique_ptr<MotionStage> stage;
+  std::unique_ptr<motion::MotionStage> stage;
   std::vector<Margins> course;
   double start_s = 0;
   std::vector<double> instants_s;  ///< of the run, at which it is pushed: each key, or whole multiples of a period
@@ -56,16 +56,16 @@ struct PlayedMotion {
 };
 
 PlayedMotion played_once(const StabilityArguments& arguments, const std::string& file, const sim::JointMotion& motion) {
-  PlayedMotion played{std::make_unique<MotionStage>(arguments.stage, motion), {}, 0, {}};
-  MotionStage& stage = *played.stage;
+  PlayedMotion played{std::make_unique<motion::MotionStage>(arguments.stage, motion), {}, 0, {}};
+  motion::MotionStage& stage = *played.stage;
   stage.support();  // contacts are known from the next step on
-  stage.after_step = [&](MotionStage& now) {
+  stage.after_step = [&](motion::MotionStage& now) {
     const auto support = now.support();
     played.course.push_back(
         support ? Margins{now.now_s(), support->static_margin_m, support->zmp_margin_m, support->capture_margin_m}
                 : Margins{now.now_s(), none, none, none});
   };
-  const double max_s = end_limit_s(motion);
+  const double max_s = motion::end_limit_s(motion);
   while (stage.player().phase() == devices::MotionPlayer::Phase::approach && stage.now_s() < max_s)
     stage.go_to(stage.now_s() + sim::to_seconds(stage.world().step_time()));
   played.start_s = stage.time_of(0);
@@ -89,7 +89,8 @@ std::string degrees(double angle_rad) {
 /// Prints a row for each instant.
 int print_table(const StabilityArguments& arguments, const sim::JointMotion& motion) {
   const PlayedMotion played = played_once(arguments, arguments.files.front(), motion);
-  const std::vector<PushMargin> margins = push_margins(*played.stage, played.instants_s, arguments.push);
+  const std::vector<motion::PushMargin> margins =
+      motion::push_margins(*played.stage, played.instants_s, arguments.push);
   std::cout << fmt::format("{:>8} {:>9} {:>9} {:>9} {:>10} {:>10} {:>9}\n", "motion s", "static mm", "zmp mm",
                            "capture mm", "push N s", "towards", "settle mm");
   double least_Ns = std::numeric_limits<double>::infinity();
@@ -126,14 +127,14 @@ std::vector<double> apart(const std::vector<double>& instants_s) {
 int print_classes(const StabilityArguments& arguments, const std::vector<sim::JointMotion>& motions) {
   std::cout << fmt::format("{:<20} {:<8} {:>9} {:>9} {:>9} {:>10} {:>9} {:>10}\n", "motion", "class", "push m/s",
                            "push N s", "motion s", "towards", "static mm", "capture mm");
-  PushOptions push = arguments.push;
+  motion::PushOptions push = arguments.push;
   push.greatest_mps = std::min(push.greatest_mps, 3 * arguments.stable_mps);
   bool any_falls = false, any_refused = false;
   for (std::size_t i = 0; i < motions.size(); ++i) {
     const std::string& name = motions[i].name;
     try {
       const PlayedMotion played = played_once(arguments, arguments.files[i], motions[i]);
-      const WeakestPush weakest = weakest_push(*played.stage, apart(played.instants_s), push);
+      const motion::WeakestPush weakest = motion::weakest_push(*played.stage, apart(played.instants_s), push);
       const Margins min = played.min_margins(played.start_s, std::numeric_limits<double>::infinity());
       any_falls = any_falls || weakest.falls;
       const char* const beyond = weakest.is_beyond ? ">" : "";
@@ -173,7 +174,7 @@ int stability(StabilityArguments arguments) {
       throw command_line::UsageError(file + ": the motion has " + (has_frames ? "frames" : "no keys") +
                                      ": give the times with --every");
   }
-  arguments.stage.world = file_by_name({ShippedKind::world}, arguments.stage.world);
+  arguments.stage.world = experiment::file_by_name({experiment::ShippedKind::world}, arguments.stage.world);
   return motions.size() == 1 ? print_table(arguments, motions.front()) : print_classes(arguments, motions);
 }
 

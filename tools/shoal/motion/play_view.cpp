@@ -11,19 +11,20 @@
 
 namespace tools {
 
-PlayView::PlayView(const ViewOptions& options, MotionStage& stage, double rate) : stage_(stage), page_(options, stage) {
+PlayView::PlayView(const experiment::ViewOptions& options, motion::MotionStage& stage, double rate)
+    : stage_(stage), page_(options, stage) {
   page_.control().speed = rate;
 }
 
 bool PlayView::goes_on() {
   constexpr std::chrono::microseconds max_wait{20'000};
   sim::RunControl& control = page_.control();
-  while (caught_signal() == 0) {
+  while (experiment::caught_signal() == 0) {
     page_.serve([this](const std::string& command, double value, const std::string&) {
       try {
-        return RunView::Answer{true, execute(command, value)};
+        return viewer::RunView::Answer{true, execute(command, value)};
       } catch (const std::runtime_error& error) {
-        return RunView::Answer{false, error.what()};
+        return viewer::RunView::Answer{false, error.what()};
       }
     });
     has_page_ = has_page_ || page_.clients() > 0;
@@ -43,7 +44,7 @@ bool PlayView::goes_on() {
 
 std::string PlayView::execute(const std::string& command, double value) {
   if (command == "rewind") return rewind(value);
-  if (command != "where" && !set_pace(page_.control(), command, value))
+  if (command != "where" && !experiment::set_pace(page_.control(), command, value))
     throw std::runtime_error("'" + sim::shortened(sim::printable(command)) +
                              "' is not possible while a motion is played: record over it to change the world");
   return fmt::format("step {}, {:.6g} s", stage_.world().step_number(), stage_.now_s());

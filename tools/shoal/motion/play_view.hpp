@@ -14,7 +14,7 @@ class PlayView {
  public:
   /// Starts the server.  `rate`: simulated seconds in a second of the clock.  `stage` must outlive this.  Throws
   /// bridges::WebError.
-  PlayView(const ViewOptions& options, MotionStage& stage, double rate);
+  PlayView(const experiment::ViewOptions& options, motion::MotionStage& stage, double rate);
 
   std::string url() const { return page_.url(); }
   /// Serves the pages until the next step is due, the first one when a page is open; returns false when a signal ends
@@ -25,9 +25,9 @@ class PlayView {
   std::string execute(const std::string& command, double value);
   std::string rewind(double seconds);
 
-  MotionStage& stage_;
-  StageView page_;
-  Pacer pacer_;
+  motion::MotionStage& stage_;
+  motion::StageView page_;
+  experiment::Pacer pacer_;
   bool has_page_ = false;
 };
 

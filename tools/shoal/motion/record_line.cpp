@@ -30,8 +30,8 @@ void RecordLine::end() {
   has_line_ = false;
 }
 
-void RecordLine::show(MotionRecorder& recorder, const JointCommands& commands, const std::vector<double>& velocities,
-                      bool is_paused) {
+void RecordLine::show(motion::MotionRecorder& recorder, const motion::JointCommands& commands,
+                      const std::vector<double>& velocities, bool is_paused) {
   const auto now = std::chrono::steady_clock::now();
   if (!is_shown_ || now < next_) return;
   next_ = now + std::chrono::milliseconds(100);
@@ -39,7 +39,7 @@ void RecordLine::show(MotionRecorder& recorder, const JointCommands& commands, c
                                  is_paused                 ? "paused   "
                                  : recorder.is_recording() ? "recording"
                                                            : "playing  ");
-  const std::optional<Support> support = recorder.stage().support();
+  const std::optional<experiment::Support> support = recorder.stage().support();
   const std::size_t margin_at = line.size();
   const std::string margin = margin_text(support);
   line += margin;
@@ -54,7 +54,7 @@ void RecordLine::show(MotionRecorder& recorder, const JointCommands& commands, c
   has_line_ = true;
 }
 
-std::string RecordLine::joints_text(MotionRecorder& recorder, const std::vector<double>& velocities) const {
+std::string RecordLine::joints_text(motion::MotionRecorder& recorder, const std::vector<double>& velocities) const {
   std::string text;
   const std::vector<std::string>& sliders = recorder.settings().sliders;
   for (std::size_t i = 0; i < velocities.size(); ++i) {
@@ -66,19 +66,19 @@ std::string RecordLine::joints_text(MotionRecorder& recorder, const std::vector<
                       : fmt::format("  {} {:+.1f}", joint, value * 180 / std::numbers::pi);
     if (recorder.is_at_limit(i)) text += " limit";
   }
-  if (tilt_rad(recorder.stage().vehicle()) > fallen_rad) text += "  fallen";
+  if (motion::tilt_rad(recorder.stage().vehicle()) > motion::fallen_rad) text += "  fallen";
   return text;
 }
 
-std::string margin_text(const std::optional<Support>& support) {
+std::string margin_text(const std::optional<experiment::Support>& support) {
   return support ? fmt::format("static {:.0f} mm", support->static_margin_m * mm) : "no support";
 }
 
-std::string push_text(const PushMargin& margin, double at_s) {
+std::string push_text(const motion::PushMargin& margin, double at_s) {
   constexpr std::array names{"ahead", "ahead left", "left",  "back left",
                              "back",  "back right", "right", "ahead right"};  // counter-clockwise
   const auto impulse = [&](double mps) {
-    return fmt::format("{}{:.2f}", mps >= PushOptions{}.greatest_mps ? ">" : "", mps * margin.mass_kg);
+    return fmt::format("{}{:.2f}", mps >= motion::PushOptions{}.greatest_mps ? ">" : "", mps * margin.mass_kg);
   };
   std::string text = fmt::format("withstands pushes at {:.2f} s, N s:", at_s);
   std::size_t worst = 0;

@@ -18,12 +18,12 @@ class RecordLine {
   ~RecordLine() { end(); }
   RecordLine(const RecordLine&) = delete;
   RecordLine& operator=(const RecordLine&) = delete;
-  void show(MotionRecorder& recorder, const JointCommands& commands, const std::vector<double>& velocities,
-            bool is_paused);
+  void show(motion::MotionRecorder& recorder, const motion::JointCommands& commands,
+            const std::vector<double>& velocities, bool is_paused);
   void end();
 
  private:
-  std::string joints_text(MotionRecorder& recorder, const std::vector<double>& velocities) const;
+  std::string joints_text(motion::MotionRecorder& recorder, const std::vector<double>& velocities) const;
 
   bool is_shown_, shows_set_, has_line_ = false;
   std::string file_;
@@ -31,8 +31,8 @@ class RecordLine {
 };
 
 /// Returns the static margin as text: `static 43 mm`, or that fewer than three contacts carry the vehicle.
-std::string margin_text(const std::optional<Support>& support);
+std::string margin_text(const std::optional<experiment::Support>& support);
 /// Returns the pushes that a vehicle withstands as a line, without its end: each direction in N s, then the worst.
-std::string push_text(const PushMargin& margin, double at_s);
+std::string push_text(const motion::PushMargin& margin, double at_s);
 
 }  // namespace tools

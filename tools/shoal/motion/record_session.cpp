@@ -23,13 +23,13 @@ std::vector<std::string> keys_of(const std::vector<BoundAction>& actions) {
   return keys;
 }
 
-FramePace::Clock::duration clock_time(double seconds) {
-  return std::chrono::duration_cast<FramePace::Clock::duration>(std::chrono::duration<double>(seconds));
+motion::FramePace::Clock::duration clock_time(double seconds) {
+  return std::chrono::duration_cast<motion::FramePace::Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
 }  // namespace
 
-RecordSession::RecordSession(const RecordArguments& arguments, MotionRecorder& recorder,
+RecordSession::RecordSession(const RecordArguments& arguments, motion::MotionRecorder& recorder,
                              std::vector<BoundAction> actions)
     : arguments_(arguments),
       recorder_(recorder),
@@ -43,11 +43,11 @@ RecordSession::RecordSession(const RecordArguments& arguments, MotionRecorder& r
             clock_time(sim::to_seconds(recorder.stage().world().step_time()) / arguments.rate.value_or(1))) {
   for (const BoundAction& one : actions_)
     if (commands_.uses(one.key)) throw command_line::UsageError("--on: key '" + one.key + "' has another effect");
-  if (!is_live_) inputs_.push_back(std::make_unique<EventFileInput>(arguments.events));
+  if (!is_live_) inputs_.push_back(std::make_unique<motion::EventFileInput>(arguments.events));
   for (const std::string& device : arguments.devices)
-    inputs_.push_back(std::make_unique<DeviceInput>(device, commands_));
-  if (is_live_ && TerminalKeys::possible()) {
-    auto terminal = std::make_unique<TerminalInput>(!arguments.devices.empty());
+    inputs_.push_back(std::make_unique<motion::DeviceInput>(device, commands_));
+  if (is_live_ && experiment::TerminalKeys::possible()) {
+    auto terminal = std::make_unique<motion::TerminalInput>(!arguments.devices.empty());
     if (arguments.devices.empty()) terminal_ = terminal.get();
     inputs_.push_back(std::move(terminal));
   }
@@ -65,12 +65,12 @@ int RecordSession::run() {
   const double period_s = recorder_.frame_s() / arguments_.rate.value_or(1);
   mode_until_ = Clock::now() + time_to_answer;
   pace_.restart(Clock::now());
-  for (std::int64_t tick = 0; caught_signal() == 0 && !is_over(); ++tick) {
+  for (std::int64_t tick = 0; experiment::caught_signal() == 0 && !is_over(); ++tick) {
     bool goes_on = true;
     try {
       const auto until_us = static_cast<std::int64_t>(std::llround(static_cast<double>(tick) * period_s * 1e6));
       for (const auto& input : inputs_) goes_on = input->read(until_us, commands_) && goes_on;
-    } catch (const DriveError& error) {
+    } catch (const experiment::DriveError& error) {
       line_.end();
       std::cerr << "shoal motion record: " << error.what() << "; what was recorded is saved\n";
       return exit_bus;
@@ -105,7 +105,7 @@ void RecordSession::show_mode() {
 }
 
 void RecordSession::carry_out() {
-  for (const RecordWish wish : commands_.take_wishes()) carry_out(wish);
+  for (const motion::RecordWish wish : commands_.take_wishes()) carry_out(wish);
   for (const std::size_t number : commands_.take_actions()) {
     try {
       recorder_.change(actions_[number].action);
@@ -116,18 +116,18 @@ void RecordSession::carry_out() {
   }
 }
 
-void RecordSession::carry_out(RecordWish wish) {
+void RecordSession::carry_out(motion::RecordWish wish) {
   switch (wish) {
-    case RecordWish::pause:
+    case motion::RecordWish::pause:
       is_paused_ = !is_paused_;
       break;
-    case RecordWish::finish:
+    case motion::RecordWish::finish:
       is_finished_ = true;
       break;
-    case RecordWish::push:
+    case motion::RecordWish::push:
       measure_push();
       break;
-    case RecordWish::back:
+    case motion::RecordWish::back:
       recorder_.back(back_s);
       if (view_) view_->went_back();
       commands_.release_all();
@@ -140,7 +140,7 @@ void RecordSession::carry_out(RecordWish wish) {
 void RecordSession::measure_push() {
   line_.end();
   if (is_live_) std::cerr << "measures pushes: the recording waits\n";
-  const PushMargin margin = recorder_.push_margin();
+  const motion::PushMargin margin = recorder_.push_margin();
   std::cerr << push_text(margin, recorder_.now_s()) << '\n';
   pace_.restart(Clock::now());
 }

@@ -21,8 +21,8 @@ struct RecordArguments {
   std::vector<std::string> devices, overdub, actions;
   std::optional<double> rate, from_s, to_s, duration_s;
   bool append = false, overwrite = false, recover = false, with_page = false, open = false, embed = false;
-  ViewOptions view;
-  StageOptions stage;
+  experiment::ViewOptions view;
+  motion::StageOptions stage;
 };
 
 /// Key of an action of the world.
@@ -36,32 +36,32 @@ class RecordSession {
  public:
   /// All must outlive this.  Throws command_line::UsageError for keys that have two effects and without an input,
   /// DriveError for an input that cannot be read, bridges::WebError.
-  RecordSession(const RecordArguments& arguments, MotionRecorder& recorder, std::vector<BoundAction> actions);
+  RecordSession(const RecordArguments& arguments, motion::MotionRecorder& recorder, std::vector<BoundAction> actions);
 
   /// Records until an input ends it; returns the exit code.
   int run();
 
  private:
-  using Clock = FramePace::Clock;
+  using Clock = motion::FramePace::Clock;
 
   bool is_over() const;
   void show_mode();
   void carry_out();
-  void carry_out(RecordWish wish);
+  void carry_out(motion::RecordWish wish);
   void measure_push();
   void wait();
 
   const RecordArguments& arguments_;
-  MotionRecorder& recorder_;
+  motion::MotionRecorder& recorder_;
   std::vector<BoundAction> actions_;
-  JointCommands commands_;
+  motion::JointCommands commands_;
   const bool is_live_;  ///< at the pace of the clock
   RecordLine line_;
-  FramePace pace_;
-  std::vector<std::unique_ptr<RecordInput>> inputs_;
-  const TerminalInput* terminal_ = nullptr;  ///< whose mode is not shown yet
+  motion::FramePace pace_;
+  std::vector<std::unique_ptr<motion::RecordInput>> inputs_;
+  const motion::TerminalInput* terminal_ = nullptr;  ///< whose mode is not shown yet
   Clock::time_point mode_until_{};
-  std::optional<RecordView> view_;
+  std::optional<motion::RecordView> view_;
   bool is_paused_ = false, is_finished_ = false;
 };
 

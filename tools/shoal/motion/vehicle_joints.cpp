@@ -26,9 +26,9 @@ std::string existing_names_file(const std::string& vehicle_file, const std::stri
 
 }  // namespace
 
-JointNames joint_names_of(const std::string& vehicle_file, const std::string& names_file) {
+motion::JointNames joint_names_of(const std::string& vehicle_file, const std::string& names_file) {
   const sim::VehicleConfig vehicle = sim::load_vehicle(vehicle_file);
-  std::vector<NamedJoint> joints;
+  std::vector<motion::NamedJoint> joints;
   for (const devices::ServoOfVehicle& servo : devices::servos_of(vehicle)) {
     const auto joint = std::find_if(vehicle.joints.begin(), vehicle.joints.end(),
                                     [&](const sim::JointConfig& one) { return one.name == servo.params->joint; });
@@ -38,8 +38,8 @@ JointNames joint_names_of(const std::string& vehicle_file, const std::string& na
   }
   if (joints.empty()) throw sim::ConfigError({vehicle_file + ": the vehicle has no joint_servo"});
   const std::string file = names_file.empty() ? existing_names_file(vehicle_file, vehicle.vehicle) : names_file;
-  std::vector<JointNameList> lists;
-  if (!file.empty()) lists = load_joint_names(file).lists;
+  std::vector<motion::JointNameList> lists;
+  if (!file.empty()) lists = motion::load_joint_names(file).lists;
   return {vehicle.vehicle, std::move(joints), std::move(lists)};
 }
 
@@ -48,7 +48,7 @@ std::string vehicle_file_of(const std::string& vehicle, const std::string& motio
   const fs::path beside = fs::path(motion_file).parent_path() / (vehicle + ".yaml");
   if (vehicle.empty()) return "";
   if (fs::is_regular_file(beside, error) && !fs::equivalent(beside, motion_file, error)) return beside.string();
-  for (const ShippedFile& file : shipped_files(ShippedKind::vehicle))
+  for (const experiment::ShippedFile& file : experiment::shipped_files(experiment::ShippedKind::vehicle))
     if (file.name == vehicle) return file.path;
   return "";
 }

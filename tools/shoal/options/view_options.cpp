@@ -5,7 +5,7 @@
 
 namespace tools {
 
-void add_page_options(CLI::App& command, ViewOptions& view) {
+void add_page_options(CLI::App& command, experiment::ViewOptions& view) {
   command
       .add_option("--view-port", view.port, "port of the live page; the next free one if it is taken; 0: any free one")
       ->type_name("PORT")

@@ -19,7 +19,7 @@ namespace tools {
 namespace {
 
 /// Takes port and token of an address `http://HOST:PORT/#t=TOKEN`, so that further runs have the same.
-void keep_address(const std::string& url, ViewOptions& view) {
+void keep_address(const std::string& url, experiment::ViewOptions& view) {
   constexpr std::string_view before_token = "/#t=";
   const std::size_t fragment = url.find(before_token);
   const std::size_t colon = url.rfind(':', fragment);
@@ -35,18 +35,19 @@ std::string text_of(const sim::ConfigError& error) {
 }
 
 /// Shows a text on the page until a file was saved or a signal has come.
-void wait_for_files(WatchedFiles& files, ViewOptions& view, const std::string& world_file, const std::string& problem) {
-  WaitingPage page(view, short_version(), world_file, problem);
+void wait_for_files(experiment::WatchedFiles& files, experiment::ViewOptions& view, const std::string& world_file,
+                    const std::string& problem) {
+  viewer::WaitingPage page(view, experiment::short_version(), world_file, problem);
   view.opened(page.url());
   std::cerr << "live page: " << page.url() << "\n";
   constexpr std::chrono::milliseconds tick{50};
-  while (caught_signal() == 0 && !files.changed()) {
+  while (experiment::caught_signal() == 0 && !files.changed()) {
     page.serve();
     std::this_thread::sleep_for(tick);
   }
 }
 
-int run_watched(const std::string& world_file, RunOptions& options, ViewOptions& view,
+int run_watched(const std::string& world_file, experiment::RunOptions& options, experiment::ViewOptions& view,
                 const std::function<sim::LoadedWorld()>& load, const std::function<int(const sim::LoadedWorld&)>& go) {
   bool shown = false;  // the page stays open over all runs
   view.opened = [&view, &shown, show = view.opened](const std::string& url) {
@@ -55,14 +56,14 @@ int run_watched(const std::string& world_file, RunOptions& options, ViewOptions&
   };
   int exit_code = exit_ok;
   std::set<std::string> names{world_file};
-  while (caught_signal() == 0) {
-    WatchedFiles files(names);
+  while (experiment::caught_signal() == 0) {
+    experiment::WatchedFiles files(names);
     options.leave = [&files] { return files.changed(); };
     // Run the world, if it has no errors.
     std::string problem;
     try {
       const sim::LoadedWorld loaded = load();
-      names = files_of(loaded.resolved);
+      names = experiment::files_of(loaded.resolved);
       names.insert(world_file);
       files.add(names);
       exit_code = go(loaded);
@@ -72,7 +73,7 @@ int run_watched(const std::string& world_file, RunOptions& options, ViewOptions&
       std::cerr << problem << '\n';
       exit_code = exit_usage;
     }
-    if (caught_signal() == 0 && !files.changed()) wait_for_files(files, view, world_file, problem);
+    if (experiment::caught_signal() == 0 && !files.changed()) wait_for_files(files, view, world_file, problem);
   }
   return exit_code;
 }

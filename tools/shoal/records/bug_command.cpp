@@ -13,10 +13,10 @@ namespace tools {
 
 namespace {
 
-int pack(const BugOptions& options) {
+int pack(const experiment::BugOptions& options) {
   try {
     if (!options.out.empty()) check_writable(options.out);
-    const BugReport report = write_bug_report(options);
+    const experiment::BugReport report = experiment::write_bug_report(options);
     std::cout << report.path << '\n';
     for (const std::string& line : report.inside) std::cout << "  " << line << '\n';
     if (!report.left_out.empty()) std::cout << "left out:\n";
@@ -34,7 +34,7 @@ int pack(const BugOptions& options) {
 static void add_bug_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.get_subcommand("bug");
   add_log_level_option(*command);
-  const auto options = std::make_shared<BugOptions>();
+  const auto options = std::make_shared<experiment::BugOptions>();
   // Options.
   command->add_option("RUN", options->directory, "results folder of the run")->required()->type_name("DIR");
   command->add_option("--record", options->record, "record of the run; unset: the one *.lcm file in the folder")

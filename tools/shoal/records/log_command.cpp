@@ -150,11 +150,11 @@ int allan(const std::string& path, const std::string& channel, const std::string
   try {
     for (const std::string& file : {out, png})
       if (!file.empty()) check_writable(file);
-    const AllanTable table = allan_table(path, channel, types);
-    if (!out.empty() && !(std::ofstream(out) << to_csv(table) << std::flush))
+    const viewer::AllanTable table = viewer::allan_table(path, channel, types);
+    if (!out.empty() && !(std::ofstream(out) << viewer::to_csv(table) << std::flush))
       throw std::runtime_error("'" + out + "' cannot be written");
-    if (!png.empty()) plot(table, png);
-    if (out.empty() && png.empty()) std::cout << to_csv(table);
+    if (!png.empty()) viewer::plot(table, png);
+    if (out.empty() && png.empty()) std::cout << viewer::to_csv(table);
   } catch (const bridges::BusError&) {
     throw;  // contains the name of the file
   } catch (const std::runtime_error& error) {
@@ -167,7 +167,7 @@ int allan(const std::string& path, const std::string& channel, const std::string
 struct LogArguments {
   std::string path, channel, out, png;
   std::vector<std::string> lcm_files;
-  ImageChoice choice;
+  viewer::ImageChoice choice;
 };
 
 int image(const LogArguments& arguments) {
@@ -175,7 +175,7 @@ int image(const LogArguments& arguments) {
   const std::string& path = arguments.path;
   try {
     check_writable(arguments.png);
-    const LogImage made = draw_log(path, arguments.channel, arguments.png, arguments.choice);
+    const viewer::LogImage made = viewer::draw_log(path, arguments.channel, arguments.png, arguments.choice);
     std::cout << arguments.png << ": " << arguments.channel << ", " << made.drawn << '\n';
     for (const std::string& problem : made.problems) std::cerr << path << ": " << problem << '\n';
     if (!made.problems.empty()) return exit_bus;

@@ -20,20 +20,20 @@ namespace tools {
 namespace {
 
 struct ReplayArguments {
-  ReplayOptions replay;
+  experiment::ReplayOptions replay;
   std::string report;
   bool play = false;
   std::string speed = "max";
-  PlayOptions player;
+  experiment::PlayOptions player;
 };
 
 constexpr std::size_t max_lines = 60;
 
 int run(ReplayArguments& arguments) {
-  if (!arguments.replay.world.empty()) arguments.replay.world = world_file(arguments.replay.world);
+  if (!arguments.replay.world.empty()) arguments.replay.world = experiment::world_file(arguments.replay.world);
   if (!arguments.report.empty()) check_writable(arguments.report);
-  catch_signals(true);
-  const ReplayOutcome outcome = replay(arguments.replay);
+  experiment::catch_signals(true);
+  const experiment::ReplayOutcome outcome = experiment::replay(arguments.replay);
   std::cout << outcome.to_text();
   for (std::size_t i = 0; i < outcome.report.size() && arguments.report.empty(); ++i) {
     if (i == max_lines) {
@@ -48,21 +48,21 @@ int run(ReplayArguments& arguments) {
     for (const std::string& line : outcome.report) out << line << '\n';
     if (!out.flush()) throw std::runtime_error("'" + arguments.report + "' cannot be written");
   }
-  return outcome.interrupted ? 128 + caught_signal() : outcome.exit_code();
+  return outcome.interrupted ? 128 + experiment::caught_signal() : outcome.exit_code();
 }
 
 int run_player(ReplayArguments& arguments) {
-  PlayOptions& player = arguments.player;
+  experiment::PlayOptions& player = arguments.player;
   player.log = arguments.replay.log;
   player.until_s = arguments.replay.until_s;
   player.quiet = arguments.replay.quiet;
   player.speed = parse_speed(arguments.speed).value_or(0);
-  catch_signals(true);
+  experiment::catch_signals(true);
   try {
-    const PlayOutcome outcome = play(player);
+    const experiment::PlayOutcome outcome = experiment::play(player);
     std::cout << outcome.text;
     return outcome.exit_code;
-  } catch (const RunError& error) {
+  } catch (const experiment::RunError& error) {
     std::cerr << "shoal: " << error.what() << '\n';
     return error.exit_code;
   } catch (const bridges::LockstepTimeout& error) {
@@ -73,7 +73,7 @@ int run_player(ReplayArguments& arguments) {
 
 void add_player_options(CLI::App& command, ReplayArguments& arguments) {
   CLI::Option* play = command.add_flag("--play", arguments.play, "play the record to programs, without a world");
-  PlayOptions& player = arguments.player;
+  experiment::PlayOptions& player = arguments.player;
   const auto of_play = [&](CLI::Option* option) { return option->needs(play); };
   of_play(command_line::add_name_list(command, "--await", player.await, "lockstep clients to wait for: NAME,NAME,...")
               ->type_name("NAMES"));

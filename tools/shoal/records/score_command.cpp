@@ -16,19 +16,19 @@ namespace tools {
 namespace {
 
 struct ScoreArguments {
-  LogScoreOptions score;
+  experiment::LogScoreOptions score;
   std::string json;
 };
 
 int score(const ScoreArguments& arguments) {
   if (!arguments.json.empty()) check_writable(arguments.json);
-  catch_signals(true);
-  const LogScore result = score_log(arguments.score);
+  experiment::catch_signals(true);
+  const experiment::LogScore result = experiment::score_log(arguments.score);
   std::cout << result.to_text();
   if (!arguments.json.empty() && !(std::ofstream(arguments.json) << result.to_json() << std::flush))
     throw std::runtime_error("'" + arguments.json + "' cannot be written");
-  if (result.interrupted) return 128 + caught_signal();
-  for (const RuleVerdict& verdict : result.verdicts)
+  if (result.interrupted) return 128 + experiment::caught_signal();
+  for (const experiment::RuleVerdict& verdict : result.verdicts)
     if (!verdict.passed) return exit_failed;
   return exit_ok;
 }
@@ -38,7 +38,7 @@ int score(const ScoreArguments& arguments) {
 static void add_score_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.get_subcommand("score");
   const auto arguments = std::make_shared<ScoreArguments>();
-  LogScoreOptions& options = arguments->score;
+  experiment::LogScoreOptions& options = arguments->score;
   CLI::Option* log_level = add_log_level_option(*command, "error");
   command->add_option("LOG", options.log, "log of shoal run --record")->required();
   CLI::Option* estimate =

@@ -24,13 +24,13 @@ struct SnapshotArguments {
 };
 
 /// Builds the world, restores it, and compares the hash.
-bool restores(const Snapshot& snapshot, const std::string& path) {
-  check_version(snapshot, path, short_version());
+bool restores(const experiment::Snapshot& snapshot, const std::string& path) {
+  experiment::check_version(snapshot, path, experiment::short_version());
   check_files(snapshot, path);
   sim::LoadOptions load;
   load.only_own_files = true;
   load.serial_ports = false;
-  allow_files(snapshot.files, load);
+  experiment::allow_files(snapshot.files, load);
   load.encode_message = shoal::encode_own_message;
   const sim::LoadedWorld loaded = sim::load_world_text(snapshot.resolved_world, path, load);
   sim::InProcessBus bus;
@@ -42,7 +42,7 @@ bool restores(const Snapshot& snapshot, const std::string& path) {
 }
 
 int show(const SnapshotArguments& arguments) {
-  const Snapshot snapshot = read_snapshot(arguments.file);
+  const experiment::Snapshot snapshot = experiment::read_snapshot(arguments.file);
   if (arguments.world) {
     std::cout << snapshot.resolved_world;
     return exit_ok;

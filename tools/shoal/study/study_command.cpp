@@ -22,31 +22,32 @@ namespace tools {
 namespace {
 
 /// Loads a study by its path or name.
-LoadedStudy study_named(const std::string& path, const StudyChanges& changes) {
+experiment::LoadedStudy study_named(const std::string& path, const experiment::StudyChanges& changes) {
   try {
-    return load_study(file_by_name({ShippedKind::study}, path), changes);
+    return experiment::load_study(experiment::file_by_name({experiment::ShippedKind::study}, path), changes);
   } catch (const std::invalid_argument& error) {
     throw CLI::ValidationError("--algorithm", error.what());
   }
 }
 
-int study(const std::string& path, const StudyChanges& changes, StudyOptions options) {
-  LoadedStudy loaded = study_named(path, changes);
+int study(const std::string& path, const experiment::StudyChanges& changes, experiment::StudyOptions options) {
+  experiment::LoadedStudy loaded = study_named(path, changes);
   if (options.output.empty()) options.output = usual_output(loaded, changes);
   options.allow_paths = changes.load.allow_paths;
   choose_jobs(loaded, options);
   require_algorithms(loaded);
-  catch_signals(true);
+  experiment::catch_signals(true);
   try {
-    std::vector<StudyRun> runs = plan_study(loaded, options.output);
-    write_manifest(options.output, loaded, runs);
-    check_outputs(options.output, loaded.config);
-    StudyProgress progress{runs.size()};
-    run_in_batches(loaded, runs,
-                   [&](const std::vector<std::size_t>& which) { run_study(loaded, options, runs, which, progress); });
-    if (caught_signal() != 0) {
+    std::vector<experiment::StudyRun> runs = experiment::plan_study(loaded, options.output);
+    experiment::write_manifest(options.output, loaded, runs);
+    experiment::check_outputs(options.output, loaded.config);
+    experiment::StudyProgress progress{runs.size()};
+    experiment::run_in_batches(loaded, runs, [&](const std::vector<std::size_t>& which) {
+      experiment::run_study(loaded, options, runs, which, progress);
+    });
+    if (experiment::caught_signal() != 0) {
       std::cerr << "shoal: stopped; the same command continues with the missing runs\n";
-      return 128 + caught_signal();
+      return 128 + experiment::caught_signal();
     }
     return collect_results(loaded, runs, options.output, options.quiet);
   } catch (const std::runtime_error& error) {
@@ -56,15 +57,16 @@ int study(const std::string& path, const StudyChanges& changes, StudyOptions opt
 }
 
 /// Compares the table of algorithms with the runs that it is made of.  Returns the number of differences.
-std::size_t verify_table(const LoadedStudy& study, const std::vector<StudyRow>& rows, const std::string& directory,
-                         const std::vector<std::string>& cases) {
+std::size_t verify_table(const experiment::LoadedStudy& study, const std::vector<experiment::StudyRow>& rows,
+                         const std::string& directory, const std::vector<std::string>& cases) {
   const std::string path = directory + "/algorithms.csv";
   std::error_code error;
   if (!std::filesystem::exists(path, error)) {
     std::cout << "there is no algorithms.csv to compare with study.csv\n";
     return 0;
   }
-  const VerifiedTable verified = compare_with_table(study, rows, read_whole_file(path), path, cases);
+  const experiment::VerifiedTable verified =
+      experiment::compare_with_table(study, rows, experiment::read_whole_file(path), path, cases);
   constexpr std::size_t max_shown = 5;
   for (std::size_t i = 0; i < std::min(max_shown, verified.differences.size()); ++i)
     std::cout << verified.differences[i] << '\n';
@@ -77,31 +79,32 @@ std::size_t verify_table(const LoadedStudy& study, const std::vector<StudyRow>& 
 }
 
 /// Executes runs again and compares them with those of a table, perhaps of someone else.
-int verify(const std::string& path, const StudyChanges& changes, StudyOptions options, const std::string& directory,
-           const std::vector<std::string>& cases) {
-  const LoadedStudy loaded = study_named(path, changes);
+int verify(const std::string& path, const experiment::StudyChanges& changes, experiment::StudyOptions options,
+           const std::string& directory, const std::vector<std::string>& cases) {
+  const experiment::LoadedStudy loaded = study_named(path, changes);
   for (const std::string& name : cases)
     if (std::none_of(loaded.config.cases.begin(), loaded.config.cases.end(),
-                     [&](const StudyCase& each) { return each.name == name; }))
+                     [&](const experiment::StudyCase& each) { return each.name == name; }))
       throw CLI::ValidationError("--case", "the study has no case '" + name + "'");
   if (options.output.empty()) options.output = usual_output(loaded, changes) + "_verified";
   options.allow_paths = changes.load.allow_paths;
   options.fresh = true;
   choose_jobs(loaded, options);
   require_algorithms(loaded);
-  catch_signals(true);
+  experiment::catch_signals(true);
   try {
     const std::string table = directory + "/study.csv";
-    const std::vector<StudyRow> rows = parse_study_rows(read_whole_file(table), table);
-    std::vector<StudyRun> runs = plan_study(loaded, options.output);
+    const std::vector<experiment::StudyRow> rows =
+        experiment::parse_study_rows(experiment::read_whole_file(table), table);
+    std::vector<experiment::StudyRun> runs = experiment::plan_study(loaded, options.output);
     std::vector<std::size_t> which;
     for (std::size_t i = 0; i < runs.size(); ++i)
       if (cases.empty() ||
           std::find(cases.begin(), cases.end(), loaded.config.cases[runs[i].in_case].name) != cases.end())
         which.push_back(i);
-    const std::size_t different = verify_runs(loaded, options, runs, which, rows) +
+    const std::size_t different = experiment::verify_runs(loaded, options, runs, which, rows) +
                                   (loaded.config.algorithms.empty() ? 0 : verify_table(loaded, rows, directory, cases));
-    if (caught_signal() != 0) return 128 + caught_signal();
+    if (experiment::caught_signal() != 0) return 128 + experiment::caught_signal();
     return different > 0 ? exit_failed : exit_ok;
   } catch (const std::runtime_error& error) {
     std::cerr << "shoal: " << error.what() << '\n';
@@ -109,15 +112,15 @@ int verify(const std::string& path, const StudyChanges& changes, StudyOptions op
   }
 }
 
-int plan(const std::string& path, const StudyChanges& changes, std::string output) {
-  const LoadedStudy loaded = study_named(path, changes);
+int plan(const std::string& path, const experiment::StudyChanges& changes, std::string output) {
+  const experiment::LoadedStudy loaded = study_named(path, changes);
   if (output.empty()) output = usual_output(loaded, changes);
   require_algorithms(loaded);
   try {
-    const std::vector<StudyRun> runs = plan_study(loaded, output);
-    write_manifest(output, loaded, runs);
-    std::cout << fmt::format("{}: {} runs: {} cases, {} points, {} seeds\n", manifest_path(output), runs.size(),
-                             loaded.config.cases.size(), loaded.points.size(), loaded.config.seeds.size());
+    const std::vector<experiment::StudyRun> runs = experiment::plan_study(loaded, output);
+    experiment::write_manifest(output, loaded, runs);
+    std::cout << fmt::format("{}: {} runs: {} cases, {} points, {} seeds\n", experiment::manifest_path(output),
+                             runs.size(), loaded.config.cases.size(), loaded.points.size(), loaded.config.seeds.size());
     return exit_ok;
   } catch (const std::runtime_error& error) {
     std::cerr << "shoal: " << error.what() << '\n';
@@ -126,7 +129,7 @@ int plan(const std::string& path, const StudyChanges& changes, std::string outpu
 }
 
 /// Adds the options that change what a study file says.
-void add_change_options(CLI::App& command, std::string& seeds, StudyChanges& changes, std::string& output) {
+void add_change_options(CLI::App& command, std::string& seeds, experiment::StudyChanges& changes, std::string& output) {
   command.add_option("--seeds", seeds, "instead of those of the study: 7, 1-10 or 1-3,8")->type_name("SEEDS");
   command
       .add_option("--duration", changes.duration_s, "shorten every run to this simulated duration, s, for a quick look")
@@ -137,9 +140,9 @@ void add_change_options(CLI::App& command, std::string& seeds, StudyChanges& cha
       ->type_name("DIR");
 }
 
-void take_seeds(const std::string& seeds, StudyChanges& changes) {
+void take_seeds(const std::string& seeds, experiment::StudyChanges& changes) {
   try {
-    if (!seeds.empty()) changes.seeds = parse_seeds(seeds);
+    if (!seeds.empty()) changes.seeds = experiment::parse_seeds(seeds);
   } catch (const std::invalid_argument& error) {
     throw CLI::ValidationError("--seeds", error.what());
   }
@@ -149,7 +152,7 @@ void add_study_plan_command(CLI::App& study_command, int& exit_code) {
   CLI::App* command = study_command.add_subcommand("plan", "Write the list of runs of a study, and run none");
   struct Arguments {
     std::string path, seeds, output;
-    StudyChanges changes;
+    experiment::StudyChanges changes;
   };
   const auto arguments = std::make_shared<Arguments>();
   add_log_level_option(*command, "warn");
@@ -177,8 +180,8 @@ static void add_study_command(CLI::App& app, int& exit_code) {
     std::string path, seeds;
     std::string verified;
     std::vector<std::string> cases;
-    StudyChanges changes;
-    StudyOptions options;
+    experiment::StudyChanges changes;
+    experiment::StudyOptions options;
   };
   const auto arguments = std::make_shared<Arguments>();
   arguments->options.jobs = 0;

@@ -19,13 +19,13 @@
 
 namespace tools {
 
-std::string usual_output(const LoadedStudy& study, const StudyChanges& changes) {
+std::string usual_output(const experiment::LoadedStudy& study, const experiment::StudyChanges& changes) {
   const std::string look = changes.duration_s ? fmt::format("_{:g}s", *changes.duration_s) : "";
   return "results/" + study.config.name + look;
 }
 
-void choose_jobs(const LoadedStudy& study, StudyOptions& options) {
-  const auto shared = find_shared_port(study);
+void choose_jobs(const experiment::LoadedStudy& study, experiment::StudyOptions& options) {
+  const auto shared = experiment::find_shared_port(study);
   if (shared && options.jobs > 1)
     sim::throw_config_error(
         shared->place, shared->who,
@@ -39,20 +39,21 @@ void choose_jobs(const LoadedStudy& study, StudyOptions& options) {
               << "'; with {run} in its path each has its own\n";
 }
 
-int collect_results(LoadedStudy& study, std::vector<StudyRun>& runs, const std::string& output, bool quiet) {
-  drop_needless_seeds(study, runs);
-  const StudyResults results(study, runs);
-  int exit_code = results.judgement() == Judgement::failed ? exit_failed : exit_ok;
+int collect_results(experiment::LoadedStudy& study, std::vector<experiment::StudyRun>& runs, const std::string& output,
+                    bool quiet) {
+  experiment::drop_needless_seeds(study, runs);
+  const experiment::StudyResults results(study, runs);
+  int exit_code = results.judgement() == experiment::Judgement::failed ? exit_failed : exit_ok;
   if (results.failed_runs() > 0) exit_code = exit_bus;
-  write_study(output, study, runs, results, exit_code);
-  write_database(output + "/study.sqlite", results);
-  write_whole_file(output + "/report.html", report_page({output}));
+  experiment::write_study(output, study, runs, results, exit_code);
+  experiment::write_database(output + "/study.sqlite", results);
+  experiment::write_whole_file(output + "/report.html", experiment::report_page({output}));
   std::cout << results.to_text(output);
   if (!quiet) std::cerr << "results in " << output << "/ (study.csv, study.json, study.sqlite, report.html)\n";
-  return caught_signal() != 0 ? 128 + caught_signal() : exit_code;
+  return experiment::caught_signal() != 0 ? 128 + experiment::caught_signal() : exit_code;
 }
 
-void add_jobs_options(CLI::App& command, StudyOptions& options) {
+void add_jobs_options(CLI::App& command, experiment::StudyOptions& options) {
   command.add_option("--jobs", options.jobs, "runs at the same time; 0: one for every two processors")
       ->type_name("N")
       ->check(whole_from(0, 64));
@@ -68,11 +69,12 @@ void add_jobs_options(CLI::App& command, StudyOptions& options) {
   command.add_flag("--quiet", options.quiet, "no progress");
 }
 
-void require_algorithms(const LoadedStudy& study) {
+void require_algorithms(const experiment::LoadedStudy& study) {
   std::string names;
   for (const std::string& algorithm : study.config.algorithms) names += (names.empty() ? "" : ",") + algorithm;
   if (names.empty()) return;
-  const ProgramOutput output = output_of({algorithm_program(), "--list", "--algorithm", names});
+  const experiment::ProgramOutput output =
+      experiment::output_of({experiment::algorithm_program(), "--list", "--algorithm", names});
   if (output.exit_code == 0) return;
   const std::string start = "shoal-nav: ";
   std::string text = output.text.starts_with(start) ? output.text.substr(start.size()) : output.text;
@@ -81,7 +83,7 @@ void require_algorithms(const LoadedStudy& study) {
   sim::throw_config_error(study.config.algorithms_place, "", "'algorithms': " + text);
 }
 
-void add_algorithm_option(CLI::App& command, StudyChanges& changes) {
+void add_algorithm_option(CLI::App& command, experiment::StudyChanges& changes) {
   command_line::add_name_list(command, "--algorithm", changes.algorithms,
                               "algorithms of shoal-nav in addition to those of the study, such as python:FILE.Class");
 }

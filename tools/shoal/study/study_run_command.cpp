@@ -21,8 +21,8 @@ namespace {
 struct StudyRunArguments {
   std::string directory, indices, engine = "local";
   sim::LoadOptions load;
-  StudyChanges changes;  ///< only its algorithms
-  EngineOptions options;
+  experiment::StudyChanges changes;  ///< only its algorithms
+  experiment::EngineOptions options;
   bool no_wait = false;
 };
 
@@ -31,25 +31,28 @@ std::vector<std::size_t> chosen_runs(const StudyRunArguments& arguments, std::si
   std::iota(all.begin(), all.end(), std::size_t{0});
   if (arguments.indices.empty()) return all;
   try {
-    return parse_indices(arguments.indices, size);
+    return experiment::parse_indices(arguments.indices, size);
   } catch (const std::invalid_argument& error) {
     throw CLI::ValidationError("--index", error.what());
   }
 }
 
-void execute(const StudyRunArguments& arguments, PlannedStudy& planned, const std::vector<std::size_t>& which,
-             StudyProgress& progress) {
-  const EngineOptions& options = arguments.options;
-  if (arguments.engine == "local") return run_study(planned.study, options.study, planned.runs, which, progress);
-  if (arguments.engine == "parallel") return run_by_parallel(planned.study, options, planned.runs, which, progress);
-  run_by_slurm(planned.study, options, planned.runs, which, progress);
+void execute(const StudyRunArguments& arguments, experiment::PlannedStudy& planned,
+             const std::vector<std::size_t>& which, experiment::StudyProgress& progress) {
+  const experiment::EngineOptions& options = arguments.options;
+  if (arguments.engine == "local")
+    return experiment::run_study(planned.study, options.study, planned.runs, which, progress);
+  if (arguments.engine == "parallel")
+    return experiment::run_by_parallel(planned.study, options, planned.runs, which, progress);
+  experiment::run_by_slurm(planned.study, options, planned.runs, which, progress);
 }
 
 /// Reports what is left.  Returns the exit code.
-int outcome(const StudyRunArguments& arguments, const PlannedStudy& planned, const std::vector<std::size_t>& which) {
-  if (caught_signal() != 0) {
+int outcome(const StudyRunArguments& arguments, const experiment::PlannedStudy& planned,
+            const std::vector<std::size_t>& which) {
+  if (experiment::caught_signal() != 0) {
     std::cerr << "shoal: stopped; the same command continues with the missing runs\n";
-    return 128 + caught_signal();
+    return 128 + experiment::caught_signal();
   }
   if (arguments.no_wait) return exit_ok;
   std::size_t failed = 0, missing = 0;
@@ -62,13 +65,13 @@ int outcome(const StudyRunArguments& arguments, const PlannedStudy& planned, con
 }
 
 int run_planned(StudyRunArguments& arguments) {
-  catch_signals(true);
+  experiment::catch_signals(true);
   try {
-    const Manifest manifest(arguments.directory);
+    const experiment::Manifest manifest(arguments.directory);
     std::vector<std::size_t> which = chosen_runs(arguments, manifest.size());
-    PlannedStudy planned = load_planned(manifest, arguments.load, arguments.changes.algorithms);
-    check_planned(manifest, planned, which);
-    StudyOptions& options = arguments.options.study;
+    experiment::PlannedStudy planned = experiment::load_planned(manifest, arguments.load, arguments.changes.algorithms);
+    experiment::check_planned(manifest, planned, which);
+    experiment::StudyOptions& options = arguments.options.study;
     options.output = arguments.directory;
     options.any_version = true;
     options.allow_paths = arguments.load.allow_paths;
@@ -80,16 +83,17 @@ int run_planned(StudyRunArguments& arguments) {
     require_algorithms(planned.study);
     arguments.options.wait = !arguments.no_wait;
     arguments.options.algorithms = arguments.changes.algorithms;
-    StudyProgress progress{which.size()};
+    experiment::StudyProgress progress{which.size()};
     // Chosen runs are executed whether the result is certain or not.
     if (!arguments.indices.empty() || !planned.study.config.until) {
       execute(arguments, planned, which, progress);
     } else {
       if (arguments.no_wait)
         throw CLI::ValidationError("--no-wait", "cannot be combined with a study that has 'until'");
-      run_in_batches(planned.study, planned.runs,
-                     [&](const std::vector<std::size_t>& batch) { execute(arguments, planned, batch, progress); });
-      drop_needless_seeds(planned.study, planned.runs);
+      experiment::run_in_batches(planned.study, planned.runs, [&](const std::vector<std::size_t>& batch) {
+        execute(arguments, planned, batch, progress);
+      });
+      experiment::drop_needless_seeds(planned.study, planned.runs);
       which.resize(planned.runs.size());
       std::iota(which.begin(), which.end(), std::size_t{0});
     }
@@ -102,15 +106,15 @@ int run_planned(StudyRunArguments& arguments) {
   }
 }
 
-int collect(const std::string& directory, const sim::LoadOptions& load, const StudyChanges& changes, bool show,
-            bool quiet) {
-  catch_signals(true);
+int collect(const std::string& directory, const sim::LoadOptions& load, const experiment::StudyChanges& changes,
+            bool show, bool quiet) {
+  experiment::catch_signals(true);
   try {
-    const Manifest manifest(directory);
-    PlannedStudy planned = load_planned(manifest, load, changes.algorithms);
-    check_outputs(directory, planned.study.config);
-    for (StudyRun& run : planned.runs) read_result(planned.study, true, run);
-    if (show) show_extreme_runs(planned.study, planned.runs, directory, load.allow_paths);
+    const experiment::Manifest manifest(directory);
+    experiment::PlannedStudy planned = experiment::load_planned(manifest, load, changes.algorithms);
+    experiment::check_outputs(directory, planned.study.config);
+    for (experiment::StudyRun& run : planned.runs) experiment::read_result(planned.study, true, run);
+    if (show) experiment::show_extreme_runs(planned.study, planned.runs, directory, load.allow_paths);
     return collect_results(planned.study, planned.runs, directory, quiet);
   } catch (const std::runtime_error& error) {
     if (dynamic_cast<const sim::ConfigError*>(&error) != nullptr) throw;
@@ -124,7 +128,7 @@ int collect(const std::string& directory, const sim::LoadOptions& load, const St
 void add_study_run_command(CLI::App& study_command, int& exit_code) {
   CLI::App* command = study_command.add_subcommand("run", "Execute planned runs that have no result yet");
   const auto arguments = std::make_shared<StudyRunArguments>();
-  EngineOptions& options = arguments->options;
+  experiment::EngineOptions& options = arguments->options;
   options.study.jobs = 0;
   options.study.threads = 0;
   // Options.
@@ -173,7 +177,7 @@ void add_study_collect_command(CLI::App& study_command, int& exit_code) {
   struct Arguments {
     std::string directory;
     sim::LoadOptions load;
-    StudyChanges changes;
+    experiment::StudyChanges changes;
     bool show = false, quiet = false;
   };
   const auto arguments = std::make_shared<Arguments>();

@@ -23,57 +23,58 @@ namespace {
 
 struct TuneArguments {
   std::string path, seeds, goal = "min";
-  StudyChanges changes;
-  TuneOptions options;
+  experiment::StudyChanges changes;
+  experiment::TuneOptions options;
 };
 
-std::string values_of(const Tuning& tuning, const TunedPoint& point) {
-  return values_text(tuning.study().config, tuning.study().points[point.point]);
+std::string values_of(const experiment::Tuning& tuning, const experiment::TunedPoint& point) {
+  return experiment::values_text(tuning.study().config, tuning.study().points[point.point]);
 }
 
 /// Returns `a rule of its world does not hold in 2 of 4 runs`; empty: in none.
-std::string failed_text(const TunedPoint& point) {
+std::string failed_text(const experiment::TunedPoint& point) {
   if (point.failed == 0) return {};
   return fmt::format("a rule of its world does not hold in {} of {} runs", point.failed, point.runs);
 }
 
 /// Throws CLI::ValidationError for a figure that no metric of the world has.
-void check_figure(const LoadedStudy& study, const std::string& figure) {
-  if (figure == passed_figure) return;
+void check_figure(const experiment::LoadedStudy& study, const std::string& figure) {
+  if (figure == experiment::passed_figure) return;
   for (const sim::LoadedWorld& world : study.worlds)
     if (const auto problem = sim::figure_problem(world.config.metrics, figure))
       throw CLI::ValidationError("--figure", problem->text);
 }
 
 int tune(TuneArguments& arguments) {
-  TuneOptions& options = arguments.options;
+  experiment::TuneOptions& options = arguments.options;
   arguments.changes.tuned = true;
-  LoadedStudy study = load_study(file_by_name({ShippedKind::study}, arguments.path), arguments.changes);
+  experiment::LoadedStudy study = experiment::load_study(
+      experiment::file_by_name({experiment::ShippedKind::study}, arguments.path), arguments.changes);
   check_figure(study, options.figure);
   if (options.study.output.empty()) options.study.output = "results/" + study.config.name + "_tune";
   options.study.allow_paths = arguments.changes.load.allow_paths;
   options.maximize = arguments.goal == "max";
   choose_jobs(study, options.study);
-  catch_signals(true);
+  experiment::catch_signals(true);
   try {
-    Tuning tuning(std::move(study), options);
+    experiment::Tuning tuning(std::move(study), options);
     const std::string table = options.study.output + "/tune.csv";
-    make_folders(options.study.output, options.study.output);
-    refuse_links(options.study.output, table);
-    check_whole_file(table);
+    experiment::make_folders(options.study.output, options.study.output);
+    experiment::refuse_links(options.study.output, table);
+    experiment::check_whole_file(table);
     tuning.run([&](int generation) {
-      write_whole_file(table, tuning.to_csv());
-      const TunedPoint& best = *tuning.best();
+      experiment::write_whole_file(table, tuning.to_csv());
+      const experiment::TunedPoint& best = *tuning.best();
       const std::string failed = best.failed > 0 ? "; FAILED: " + failed_text(best) : "";
       std::cout << fmt::format("generation {}: {} of {} {:.6g}: {}{}\n", generation, options.statistic, options.figure,
                                best.value, values_of(tuning, best), failed)
                 << std::flush;
     });
-    if (caught_signal() != 0) {
+    if (experiment::caught_signal() != 0) {
       std::cerr << "shoal: stopped; the same command continues with the missing runs\n";
-      return 128 + caught_signal();
+      return 128 + experiment::caught_signal();
     }
-    const TunedPoint& best = *tuning.best();
+    const experiment::TunedPoint& best = *tuning.best();
     std::cout << "best of " << tuning.tried().size() << " points: " << values_of(tuning, best) << '\n'
               << tuning.command(best) << '\n';
     if (best.failed > 0) std::cout << "FAILED: " << failed_text(best) << " at the best point\n";
@@ -91,7 +92,7 @@ int tune(TuneArguments& arguments) {
 static void add_tune_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.get_subcommand("tune");
   const auto arguments = std::make_shared<TuneArguments>();
-  TuneOptions& options = arguments->options;
+  experiment::TuneOptions& options = arguments->options;
   options.study.jobs = 0;
   options.study.threads = 0;
   // Options.
@@ -105,7 +106,7 @@ static void add_tune_command(CLI::App& app, int& exit_code) {
       ->check(one_of({"min", "max"}));
   command->add_option("--over", options.statistic, "statistic over the cases and seeds of a point")
       ->type_name("STATISTIC")
-      ->check(one_of(statistic_words()));
+      ->check(one_of(experiment::statistic_words()));
   command->add_option("--generations", options.generations, "of the search")
       ->type_name("N")
       ->check(whole_from(1, 10000));
@@ -142,7 +143,7 @@ static void add_tune_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, log_level, &exit_code] {
     if (log_level->count() > 0 && !sim::log_shows(sim::LogLevel::info)) arguments->options.study.quiet = true;
     try {
-      if (!arguments->seeds.empty()) arguments->changes.seeds = parse_seeds(arguments->seeds);
+      if (!arguments->seeds.empty()) arguments->changes.seeds = experiment::parse_seeds(arguments->seeds);
     } catch (const std::invalid_argument& error) {
       throw CLI::ValidationError("--seeds", error.what());
     }

@@ -54,11 +54,12 @@ std::string record_in(const std::string& directory, std::string& why_not) {
 /// Makes the page of a record.  Throws BusError, and std::runtime_error.
 void make_page(const std::string& record, const std::string& directory, const std::string& path) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
-  const RecordingPage page = make_recording_page(record, short_version(), max_recording_page_bytes, [&](double share) {
-    if (terminal) std::cerr << fmt::format("\r{}: {:.0f} % read", record, 100 * share) << std::flush;
-  });
+  const viewer::RecordingPage page = viewer::make_recording_page(
+      record, experiment::short_version(), viewer::max_recording_page_bytes, [&](double share) {
+        if (terminal) std::cerr << fmt::format("\r{}: {:.0f} % read", record, 100 * share) << std::flush;
+      });
   if (terminal) std::cerr << "\r\033[K";
-  const std::string world = read_run(directory).world;
+  const std::string world = experiment::read_run(directory).world;
   if (page.world != world)
     throw std::runtime_error(
         fmt::format("{}: is of world '{}', but the run in {} is of '{}'", record, page.world, directory, world));
@@ -77,7 +78,7 @@ std::string page_in_3d(const ReportArguments& arguments) {
   std::string why_not, record = arguments.record;
   if (record.empty()) record = record_in(directory, why_not);
   const std::string path = arguments.page.empty() ? directory + "/run.html" : arguments.page;
-  if (arguments.page.empty()) refuse_links(directory, path);
+  if (arguments.page.empty()) experiment::refuse_links(directory, path);
   try {
     if (record.empty()) throw std::runtime_error(why_not);
     make_page(record, directory, path);
@@ -113,9 +114,9 @@ int report(const ReportArguments& arguments) {
                                  : directories.front() + (several ? "/comparison.html" : "/report.html");
   try {
     // A stranger's folder may have a link in place of a page whose name the user did not choose.
-    if (arguments.output.empty()) refuse_links(directories.front(), output);
+    if (arguments.output.empty()) experiment::refuse_links(directories.front(), output);
     const std::string page = several ? "" : page_in_3d(arguments);
-    write_page(output, report_page(directories, page.empty() ? "" : address_from(page, output)));
+    write_page(output, experiment::report_page(directories, page.empty() ? "" : address_from(page, output)));
   } catch (const std::runtime_error& error) {
     std::cerr << "shoal: " << error.what() << '\n';
     return exit_bus;

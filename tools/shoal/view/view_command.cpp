@@ -38,7 +38,7 @@ struct ViewArguments {
   std::string lcm_url;
   std::optional<double> duration_s;
   bool open = false;
-  ViewOptions view;
+  experiment::ViewOptions view;
 };
 
 using Clock = std::chrono::steady_clock;
@@ -51,22 +51,22 @@ class Deadline {
   explicit Deadline(const std::optional<double>& duration_s) {
     if (duration_s) end_ = Clock::now() + std::chrono::milliseconds(std::llround(1000 * *duration_s));
   }
-  bool goes_on() const { return caught_signal() == 0 && (!end_ || Clock::now() < *end_); }
+  bool goes_on() const { return experiment::caught_signal() == 0 && (!end_ || Clock::now() < *end_); }
 
  private:
   std::optional<Clock::time_point> end_;
 };
 
-void announce(const ViewOptions& view, const std::string& url) {
+void announce(const experiment::ViewOptions& view, const std::string& url) {
   std::cout << "live page: " << url << "\nCtrl-C ends it\n" << std::flush;
   if (view.opened) view.opened(url);
 }
 
 /// Reads a log and prints what it is.
-LogIndex read_index(const std::string& log) {
+viewer::LogIndex read_index(const std::string& log) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
   const auto begin = Clock::now();
-  LogIndex index(log, [&](double share) {
+  viewer::LogIndex index(log, [&](double share) {
     if (terminal) std::cerr << fmt::format("\r{}: {:.0f} % read", log, 100 * share) << std::flush;
   });
   if (terminal) std::cerr << "\r\033[K";
@@ -79,8 +79,9 @@ LogIndex read_index(const std::string& log) {
 }
 
 /// Finds and prints where two logs differ first.
-std::optional<LogDifference> compare(const ViewArguments& arguments, const LogIndex& a, const LogIndex& b) {
-  const auto difference = first_difference(arguments.logs[0], a, arguments.logs[1], b);
+std::optional<viewer::LogDifference> compare(const ViewArguments& arguments, const viewer::LogIndex& a,
+                                             const viewer::LogIndex& b) {
+  const auto difference = viewer::first_difference(arguments.logs[0], a, arguments.logs[1], b);
   if (!difference)
     std::cout << "no difference over the common time span\n";
   else
@@ -92,10 +93,10 @@ std::optional<LogDifference> compare(const ViewArguments& arguments, const LogIn
 
 int view_log(const ViewArguments& arguments) {
   const std::string& log = arguments.logs.front();
-  const LogIndex index = read_index(log);
-  std::optional<LogIndex> other;
+  const viewer::LogIndex index = read_index(log);
+  std::optional<viewer::LogIndex> other;
   if (arguments.logs.size() > 1) other = read_index(arguments.logs[1]);
-  LogView view(log, index, arguments.view, short_version());
+  viewer::LogView view(log, index, arguments.view, experiment::short_version());
   if (other) view.compare_with(arguments.logs[1], *other, compare(arguments, index, *other));
   announce(arguments.view, view.url());
   // Play in steps of wall time.
@@ -110,14 +111,14 @@ int view_log(const ViewArguments& arguments) {
 }
 
 int view_again(const ViewArguments& arguments) {
-  ResimulatedRun::Options options;
+  viewer::ResimulatedRun::Options options;
   options.log = arguments.logs.front();
   options.load = arguments.load;
   options.threads = arguments.threads;
   options.view = arguments.view;
   options.launch = arguments.launch;
   options.lcm_url = arguments.lcm_url;
-  const auto run = std::make_unique<ResimulatedRun>(options, short_version());
+  const auto run = std::make_unique<viewer::ResimulatedRun>(options, experiment::short_version());
   std::cout << fmt::format("{}: world {}, re-simulated to t = {:.3f} s; programs: {}\n", options.log,
                            run->world().config().name, run->end_s(), run->programs());
   for (const std::string& command : run->commands())
@@ -142,7 +143,7 @@ void ask_for_scene(bridges::LcmListener& lcm) {
 int view_bus(const ViewArguments& arguments) {
   bridges::LcmListener lcm(arguments.lcm_url);
   lcm.listen_to_all();
-  BusView view(arguments.view, short_version(), lcm.url());
+  viewer::BusView view(arguments.view, experiment::short_version(), lcm.url());
   announce(arguments.view, view.url());
   constexpr std::chrono::seconds ask_interval{2};
   Clock::time_point next_flush = Clock::now(), next_request = next_flush;
@@ -173,7 +174,8 @@ int view_bus(const ViewArguments& arguments) {
 void refuse_world(const std::string& given) {
   const bool is_world = given.ends_with(".yaml") || given.ends_with(".yml");
   bool is_shipped = false;
-  for (const ShippedFile& world : shipped_files(ShippedKind::world)) is_shipped |= world.name == given;
+  for (const experiment::ShippedFile& world : experiment::shipped_files(experiment::ShippedKind::world))
+    is_shipped |= world.name == given;
   if (!is_world && (!is_shipped || std::filesystem::exists(given))) return;
   sim::throw_config_error({}, "'" + sim::shortened(sim::printable(given)) + "'",
                           "is a world, and this command shows logs; `shoal run " + given + " --view` shows its run");
@@ -186,8 +188,8 @@ int view(ViewArguments& arguments) {
   if (arguments.resimulate && arguments.logs.size() != 1)
     throw CLI::ValidationError("--resimulate", "needs one LOG, got " + std::to_string(arguments.logs.size()));
   for (const std::string& log : arguments.logs) refuse_world(log);
-  catch_signals(true);
-  Browser browser;
+  experiment::catch_signals(true);
+  experiment::Browser browser;
   if (arguments.open) arguments.view.opened = [&browser](const std::string& url) { browser.open(url); };
   if (arguments.resimulate) return view_again(arguments);
   return arguments.logs.empty() ? view_bus(arguments) : view_log(arguments);

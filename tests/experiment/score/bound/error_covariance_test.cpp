@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Matrix2d;
 using Eigen::MatrixXd;
-using tools::ErrorCovariance;
+using experiment::ErrorCovariance;
 
 MatrixXd scalar_matrix(double value) {
   return MatrixXd::Constant(1, 1, value);

@@ -10,9 +10,9 @@
 
 namespace {
 
-using tools::TeamBound;
-using tools::VehicleErrors;
-using Motion = tools::VehicleErrors::Motion;
+using experiment::TeamBound;
+using experiment::VehicleErrors;
+using Motion = experiment::VehicleErrors::Motion;
 
 sim::Time seconds(double time_s) {
   return sim::from_seconds(time_s);

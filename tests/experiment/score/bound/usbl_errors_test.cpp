@@ -13,7 +13,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 TEST(UsblErrors, OfALevelArrayAreThoseOfBothCosinesTimesTheRange) {
-  tools::UsblErrors errors;
+  experiment::UsblErrors errors;
   errors.hearing.emplace();
   errors.hearing->array.baseline_m = 0.2;
   errors.hearing->array.phase_std_rad = 0.1;
@@ -38,7 +38,7 @@ TEST(UsblErrors, GrowAsTheAnswerGetsWeaker) {
   std::vector<const sim::VehicleConfig*> vehicles;
   for (const sim::VehicleInstance& instance : loaded.config.vehicles) vehicles.push_back(instance.config.get());
   const sim::Medium medium(loaded.config.medium, 9.81, 1);
-  const auto hearing = tools::usbl_hearing(*vehicles[0], vehicles, loaded.config.acoustics, medium);
+  const auto hearing = experiment::usbl_hearing(*vehicles[0], vehicles, loaded.config.acoustics, medium);
   ASSERT_TRUE(hearing);
   // 150 dB less 60 dB at 1 km over the noise in 1 kHz about 30 kHz, 20 times longer than 1 / 1 kHz.
   const double noise_dB = loaded.config.acoustics.noise.with_wind(medium.mean_wind_mps()).band_level(30000, 1000).dB();
@@ -48,8 +48,8 @@ TEST(UsblErrors, GrowAsTheAnswerGetsWeaker) {
   EXPECT_NEAR(hearing->cosine_std(1000), expected, 1e-9 * expected);
   EXPECT_NEAR(hearing->cosine_std(2000) / hearing->cosine_std(1000), 2, 0.02);
   // The AUV receives nothing by USBL.
-  EXPECT_FALSE(tools::usbl_hearing(*vehicles[1], vehicles, loaded.config.acoustics, medium));
-  EXPECT_FALSE(tools::usbl_hearing(*vehicles[0], {vehicles[0]}, loaded.config.acoustics, medium));
+  EXPECT_FALSE(experiment::usbl_hearing(*vehicles[1], vehicles, loaded.config.acoustics, medium));
+  EXPECT_FALSE(experiment::usbl_hearing(*vehicles[0], {vehicles[0]}, loaded.config.acoustics, medium));
 }
 
 }  // namespace

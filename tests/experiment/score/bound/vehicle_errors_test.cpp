@@ -10,19 +10,19 @@
 
 namespace {
 
-using Motion = tools::VehicleErrors::Motion;
+using Motion = experiment::VehicleErrors::Motion;
 
 /// Errors of a vehicle of a shipped world.
-tools::VehicleErrors errors_in(const std::string& world, const std::string& vehicle) {
+experiment::VehicleErrors errors_in(const std::string& world, const std::string& vehicle) {
   const sim::LoadedWorld loaded =
       sim::load_world("worlds/" + world + ".yaml", test::LoadedTestWorld::with_messages({}));
   for (const sim::VehicleInstance& instance : loaded.config.vehicles)
-    if (instance.name == vehicle) return tools::errors_of(*instance.config, loaded.config.physics.step_s);
+    if (instance.name == vehicle) return experiment::errors_of(*instance.config, loaded.config.physics.step_s);
   throw std::runtime_error("no vehicle " + vehicle);
 }
 
 TEST(VehicleErrors, OfAnAuvAreThoseOfItsFile) {
-  const tools::VehicleErrors errors = errors_in("coop_underwater", "auv");
+  const experiment::VehicleErrors errors = errors_in("coop_underwater", "auv");
   EXPECT_EQ(errors.motion, Motion::measured_velocity);
   ASSERT_EQ(errors.heading.slow.size(), 2u);
   EXPECT_EQ(errors.heading.slow[0].initial_std, 0.05);
@@ -44,7 +44,7 @@ TEST(VehicleErrors, OfAnAuvAreThoseOfItsFile) {
 }
 
 TEST(VehicleErrors, OfACraftAreThoseOfItsFixes) {
-  const tools::VehicleErrors errors = errors_in("coop_underwater", "boat1");
+  const experiment::VehicleErrors errors = errors_in("coop_underwater", "boat1");
   EXPECT_EQ(errors.motion, Motion::unknown);
   ASSERT_TRUE(errors.gps);
   EXPECT_EQ(errors.gps->position.white_std, 0.3);
@@ -54,7 +54,7 @@ TEST(VehicleErrors, OfACraftAreThoseOfItsFixes) {
 }
 
 TEST(VehicleErrors, OfWheelsIncludeTheirCalibration) {
-  const tools::VehicleErrors errors = errors_in("coop_land", "rover3");
+  const experiment::VehicleErrors errors = errors_in("coop_land", "rover3");
   EXPECT_EQ(errors.motion, Motion::wheels);
   // Wheels of 0.1 m taken for 0.1005 m, a track of 0.4 m for 0.394 m.
   EXPECT_NEAR(errors.speed_scale_std, 0.005, 1e-9);
@@ -68,7 +68,7 @@ TEST(VehicleErrors, OfWheelsIncludeTheirCalibration) {
 }
 
 TEST(VehicleErrors, OfUSBLHaveThoseOfTheHeading) {
-  const tools::VehicleErrors errors = errors_in("benchmark/12_usbl_fleet", "craft1");
+  const experiment::VehicleErrors errors = errors_in("benchmark/12_usbl_fleet", "craft1");
   ASSERT_TRUE(errors.usbl);
   EXPECT_EQ(errors.usbl->sensor.device, "usbl");
   EXPECT_EQ(errors.usbl->errors.range_std_m, 0.2);
@@ -84,7 +84,7 @@ TEST(VehicleErrors, TakeAConstantErrorForAStandardDeviation) {
   noise.random_walk_std = 0.1;
   noise.gaussian_std = 0.3;
   noise.uniform_half_width = 0.4 * std::numbers::sqrt3;
-  const tools::QuantityErrors errors = tools::errors_of(noise);
+  const experiment::QuantityErrors errors = experiment::errors_of(noise);
   EXPECT_NEAR(errors.white_std, 0.5, 1e-12);
   ASSERT_EQ(errors.slow.size(), 1u);
   EXPECT_NEAR(errors.slow[0].initial_std, 5, 1e-12);

@@ -11,15 +11,15 @@
 
 namespace {
 
-using tools::Cell;
-using tools::GridMap;
+using experiment::Cell;
+using experiment::GridMap;
 
 // Two columns, three rows from the south: free occupied, solid unknown, occupied free.
 const GridMap map{{-1.5, 2, 0.05, 2, 3},
                   {Cell::free, Cell::occupied, Cell::solid, Cell::unknown, Cell::occupied, Cell::free}};
 
 TEST(MapFiles, ImageHasTheNorthUpAndTheLevelsOfMapServer) {
-  const sim::Image8 image = tools::map_image(map);
+  const sim::Image8 image = experiment::map_image(map);
   EXPECT_EQ(image.width, 2);
   EXPECT_EQ(image.height, 3);
   EXPECT_THAT(image.data, testing::ElementsAre(0, 254, 205, 205, 254, 0));
@@ -35,14 +35,14 @@ TEST(MapFiles, LevelsAreWhatTheThresholdsOfTheYamlSay) {
 }
 
 TEST(MapFiles, YamlHasTheCornerAndTheQuotedImage) {
-  EXPECT_EQ(tools::map_yaml(map, "it's.png"),
+  EXPECT_EQ(experiment::map_yaml(map, "it's.png"),
             "image: 'it''s.png'\nmode: trinary\nresolution: 0.05\norigin: [-1.5, 2, 0.0]\nnegate: 0\n"
             "occupied_thresh: 0.65\nfree_thresh: 0.196\n");
 }
 
 TEST(MapFiles, AreWrittenBesideEachOther) {
   const test_support::ScratchFolder folder;
-  const std::string yaml = tools::write_map(folder.file("map.png"), map);
+  const std::string yaml = experiment::write_map(folder.file("map.png"), map);
   EXPECT_EQ(yaml, folder.file("map.yaml"));
   std::ifstream file(yaml);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -50,7 +50,7 @@ TEST(MapFiles, AreWrittenBesideEachOther) {
   const sim::Image8 read = sim::read_image(folder.file("map.png"));
   EXPECT_EQ(read.width, 2);
   EXPECT_EQ(*read.at(1, 0), 254);
-  EXPECT_THROW(tools::write_map(folder.file("none/map.png"), map), std::runtime_error);
+  EXPECT_THROW(experiment::write_map(folder.file("none/map.png"), map), std::runtime_error);
 }
 
 }  // namespace

@@ -8,9 +8,9 @@
 
 namespace {
 
-using tools::Cell;
-using tools::CellHistory;
-using tools::GridMap;
+using experiment::Cell;
+using experiment::CellHistory;
+using experiment::GridMap;
 
 /// A map of one row: `.` free, `#` occupied, `x` solid, `?` unknown.
 GridMap row_map(const std::string& text) {
@@ -29,7 +29,7 @@ CellHistory history_of(const std::vector<std::string>& truths) {
 }
 
 TEST(MapScore, OfTheTruthItselfIsOne) {
-  const auto scores = tools::score_map(row_map("..##?.#"), history_of({"..##x.#"}), 0, 0);
+  const auto scores = experiment::score_map(row_map("..##?.#"), history_of({"..##x.#"}), 0, 0);
   EXPECT_EQ(scores.all.iou(), 1);
   EXPECT_EQ(scores.all.hits, 3);
   EXPECT_EQ(scores.all.known_free, 3);
@@ -39,7 +39,7 @@ TEST(MapScore, OfTheTruthItselfIsOne) {
 
 TEST(MapScore, CountsEachKindOfCellOnce) {
   // Truth ..##..#.: one hit, one false occupied, one false free, and one occupied and two free cells unknown.
-  const auto scores = tools::score_map(row_map("#.#.??.?"), history_of({"..##..#."}), 0, 0);
+  const auto scores = experiment::score_map(row_map("#.#.??.?"), history_of({"..##..#."}), 0, 0);
   EXPECT_EQ(scores.all.hits, 1);
   EXPECT_EQ(scores.all.false_occupied, 1);
   EXPECT_EQ(scores.all.false_free, 2);
@@ -49,29 +49,29 @@ TEST(MapScore, CountsEachKindOfCellOnce) {
 
 TEST(MapScore, AllowsForTheBordersOfCells) {
   const CellHistory truth = history_of({"...#...."});
-  EXPECT_EQ(tools::score_map(row_map("....#..."), truth, 1, 0).all.iou(), 1);
-  EXPECT_EQ(tools::score_map(row_map("....#..."), truth, 0, 0).all.iou(), 0);
-  EXPECT_EQ(tools::score_map(row_map(".....#.."), truth, 1, 0).all.iou(), 0);
+  EXPECT_EQ(experiment::score_map(row_map("....#..."), truth, 1, 0).all.iou(), 1);
+  EXPECT_EQ(experiment::score_map(row_map("....#..."), truth, 0, 0).all.iou(), 0);
+  EXPECT_EQ(experiment::score_map(row_map(".....#.."), truth, 1, 0).all.iou(), 0);
 }
 
 TEST(MapScore, WithoutOccupiedCellsHasNoRatio) {
-  EXPECT_TRUE(std::isnan(tools::score_map(row_map("...."), history_of({"...."}), 1, 0).all.iou()));
+  EXPECT_TRUE(std::isnan(experiment::score_map(row_map("...."), history_of({"...."}), 1, 0).all.iou()));
 }
 
 TEST(MapScore, CellsAsTheyOnceWereAreStaleSinceTheirChange) {
   // Cell 1 was occupied until 100 s, cell 5 is since 200 s; the map has both as at 0 s.
   const CellHistory truth = history_of({".#......", "........", ".....#.."});
-  const auto scores = tools::score_map(row_map(".#......"), truth, 0, 250);
+  const auto scores = experiment::score_map(row_map(".#......"), truth, 0, 250);
   EXPECT_EQ(scores.all.known_changed, 2);
   EXPECT_EQ(scores.all.stale, 2);
   EXPECT_EQ(scores.all.stale_age_s, (250 - 100) + (250 - 200));
   // What never was is false, not stale.
-  EXPECT_EQ(tools::score_map(row_map("...#...."), truth, 0, 250).all.stale, 1);
+  EXPECT_EQ(experiment::score_map(row_map("...#...."), truth, 0, 250).all.stale, 1);
 }
 
 TEST(MapScore, StillCellsAreThoseWithoutAChangeNearby) {
   const CellHistory truth = history_of({"#..#....", "#......."});
-  const auto scores = tools::score_map(row_map("#..#...."), truth, 1, 100);
+  const auto scores = experiment::score_map(row_map("#..#...."), truth, 1, 100);
   EXPECT_EQ(scores.still.iou(), 1);
   EXPECT_EQ(scores.still.observable, 8 - 3);
   EXPECT_EQ(scores.all.iou(), 0.5);

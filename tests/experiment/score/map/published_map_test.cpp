@@ -9,8 +9,8 @@
 
 namespace {
 
+using experiment::Cell;
 using testing::ElementsAre;
-using tools::Cell;
 
 shoal::occupancy_grid_t grid() {
   shoal::occupancy_grid_t message{};
@@ -25,7 +25,7 @@ shoal::occupancy_grid_t grid() {
 }
 
 TEST(PublishedMap, HasTheStatesThatMapServerReads) {
-  const tools::PublishedMap published = tools::decode_map(shoal::encode(grid()));
+  const experiment::PublishedMap published = experiment::decode_map(shoal::encode(grid()));
   EXPECT_EQ(published.utime, 5);
   EXPECT_EQ(published.map.frame.origin_x_m, -1);
   EXPECT_THAT(published.map.cells,
@@ -35,7 +35,7 @@ TEST(PublishedMap, HasTheStatesThatMapServerReads) {
 /// The reason why a map is refused.
 std::string reason(const shoal::occupancy_grid_t& message) {
   try {
-    tools::decode_map(shoal::encode(message));
+    experiment::decode_map(shoal::encode(message));
     return {};
   } catch (const shoal::MessageError& error) {
     return error.what();
@@ -56,7 +56,7 @@ TEST(PublishedMap, RefusesSizesThatDoNotFit) {
   message = grid();
   message.origin_m[1] = 1e9;
   EXPECT_THAT(reason(message), testing::HasSubstr("'origin_m' must be within 1e7 m"));
-  EXPECT_THROW(tools::decode_map(shoal::encode(shoal::utime_t{})), shoal::MessageError);
+  EXPECT_THROW(experiment::decode_map(shoal::encode(shoal::utime_t{})), shoal::MessageError);
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 
 namespace {
 
-using tools::EstimateFile;
-using tools::parse_estimates;
+using experiment::EstimateFile;
+using experiment::parse_estimates;
 
 std::string estimate_error(const std::string& text) {
   try {

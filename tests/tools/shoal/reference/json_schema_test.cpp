@@ -82,9 +82,9 @@ TEST(JsonSchema, InDocsIsUpToDate) {
     const std::string path = own_schemas + "/" + file + ".schema.json";
     std::ifstream in(path, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(in), {}};
-    const std::string made = file == "study"    ? tools::study_schema(tools::params_of<tools::StudyConfig>())
+    const std::string made = file == "study"    ? tools::study_schema(tools::params_of<experiment::StudyConfig>())
                              : file == "motion" ? tools::motion_schema(tools::params_of<sim::JointMotion>())
-                             : file == "drive"  ? tools::drive_schema(tools::params_of<tools::DriveProfile>())
+                             : file == "drive"  ? tools::drive_schema(tools::params_of<experiment::DriveProfile>())
                                                 : tools::json_schema(file);
     EXPECT_TRUE(text == made) << path << " is stale; type\n  build/release/bin/shoal describe --schema " << file
                               << " > docs/reference/schema/" << file << ".schema.json";
