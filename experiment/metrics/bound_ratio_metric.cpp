@@ -56,8 +56,8 @@ void BoundRatioMetric::Params::check(const sim::MetricConfig& config, const sim:
                                     [&](const sim::MetricConfig& each) { return each.name == name; });
     return found == world.metrics.end() ? nullptr : found->params.get();
   };
-  const auto* error = dynamic_cast<const EstimateMetric::Params*>(experiment::params_of(metric));
-  const sim::MetricParams* limit = experiment::params_of(bound);
+  const auto* error = dynamic_cast<const EstimateMetric::Params*>(params_of(metric));
+  const sim::MetricParams* limit = params_of(bound);
   if (error == nullptr || limit == nullptr) return;
   const auto refuse = [&](const std::string& text) {
     diagnostics.error(config.place, "metric '" + config.name + "'", text);
