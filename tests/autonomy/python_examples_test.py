@@ -10,7 +10,7 @@ import sys
 import types
 import unittest
 
-ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "..")
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 sys.path[:0] = [os.path.join(ROOT, "examples", "python"), os.path.join(ROOT, "tests")]
 
 # coop_auv.py imports them; Debian has no lcm for Python, and nothing of them is called here.

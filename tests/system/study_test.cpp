@@ -160,10 +160,10 @@ TEST(Study, IsCheckedAsWorldsAre) {
   EXPECT_EQ(good.exit_code, 0) << good.errors;
   EXPECT_THAT(good.output, HasSubstr("study.yaml: study 'tiny' of "));
   EXPECT_THAT(good.output, HasSubstr(": 2 cases, 2 seeds, 4 runs, 1 rule\n"));
-  study.write_study(two_cases + "pass: [max(b.distance.traveled) < 1]\n");
+  study.write_study(two_cases + "pass: [max(b.distance.travelled) < 1]\n");
   const Ended bad = run_shoal({"check", file, "--allow-path", study.folder.file("")});
   EXPECT_EQ(bad.exit_code, 2);
-  EXPECT_THAT(bad.errors, HasSubstr("study.yaml:6:23: rule 1: metric 'distance' has no figure 'traveled'; figures: "
+  EXPECT_THAT(bad.errors, HasSubstr("study.yaml:6:23: rule 1: metric 'distance' has no figure 'travelled'; figures: "
                                     "travelled_m; did you mean 'travelled_m'?"));
   EXPECT_FALSE(fs::exists(study.folder.file("out")));
   for (const auto& entry : fs::directory_iterator(source("worlds/studies")))

@@ -14,7 +14,7 @@ TARGETS = ["shoal", "shoal-coop-rover"]  # of tools/run worlds/coop_land.yaml --
 MAX_OBJECTS = 115
 # What other commands, a live page and other missions need.
 LATER = re.compile(r"bridges_(web|foxglove|ros2_converters)|autonomy_(cooperative|mapping|known_map|vision|missions_)|"
-                   r"experiment_(drive|study|campaign|replay|report|optimize)|viewer_|(?<!sim_)(?<!devices_)motion_|verification_|"
+                   r"experiment_(drive|study|campaign|replay|report|optimize)|viewer_(?!estimates)|(?<!sim_)(?<!devices_)motion_|verification_|"
                    r"tools_shoal_(view|film|motion|study|files|records|models|page)")
 
 

@@ -27,7 +27,7 @@ EASING = {"linear": lambda s: s, "cosine": lambda s: (1 - math.cos(math.pi * s))
 JOINTS = ["hip", "knee", "ankle"]
 
 
-ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), *[".."] * 4))
+ROOT = os.path.abspath(os.path.join(os.path.dirname(__file__), *[".."] * 3))
 
 
 def names_of_ers7(list_name):

@@ -12,7 +12,7 @@ import tempfile
 import unittest
 
 FOLDER = os.path.dirname(os.path.abspath(__file__))
-ROOT = os.path.abspath(os.path.join(FOLDER, *[".."] * 4))
+ROOT = os.path.abspath(os.path.join(FOLDER, *[".."] * 3))
 BIN = os.path.abspath(sys.argv.pop(1) if len(sys.argv) > 1 else "build/release/bin")
 MOTION = os.path.join(ROOT, "vehicles", "motions", "ers7", "wave.yaml")
 HEADERS = ["ODataFormats", "OObject", "OObserver", "OPENRAPI", "OSubject", "OSyslog", "RCRegion", "core_macro"]
