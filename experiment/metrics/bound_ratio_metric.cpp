@@ -63,16 +63,14 @@ void BoundRatioMetric::Params::check(const sim::MetricConfig& config, const sim:
     diagnostics.error(config.place, "metric '" + config.name + "'", text);
   };
   if (error->vehicle != limit->vehicle)
-    viewer::refuse(fmt::format("'{}' and '{}' must be of the same vehicle, got '{}' and '{}'", metric, bound,
-                               error->vehicle, limit->vehicle));
+    refuse(fmt::format("'{}' and '{}' must be of the same vehicle, got '{}' and '{}'", metric, bound, error->vehicle,
+                       limit->vehicle));
   if (error->from_s != limit->from_s)
-    viewer::refuse(fmt::format("'{}' and '{}' must have the same 'from_s', got {:.6g} and {:.6g}", metric, bound,
-                               error->from_s, limit->from_s));
+    refuse(fmt::format("'{}' and '{}' must have the same 'from_s', got {:.6g} and {:.6g}", metric, bound, error->from_s,
+                       limit->from_s));
   if (std::isfinite(error->until_s))
-    viewer::refuse(
-        fmt::format("'{}' must not have 'until_s', got {:.6g}: the bound is until the end", metric, error->until_s));
-  if (error->dimensions != 2)
-    viewer::refuse(fmt::format("'{}' must have 2 dimensions: the bound is horizontal", metric));
+    refuse(fmt::format("'{}' must not have 'until_s', got {:.6g}: the bound is until the end", metric, error->until_s));
+  if (error->dimensions != 2) refuse(fmt::format("'{}' must have 2 dimensions: the bound is horizontal", metric));
 }
 
 SHOAL_METRIC("bound_ratio", BoundRatioMetric);

@@ -9,7 +9,7 @@ namespace experiment {
 
 namespace {
 
-constexpr double motion::fallen_rad = std::numbers::pi / 4;
+constexpr double fallen_rad = std::numbers::pi / 4;
 
 /// Tilt of the first body of a vehicle.
 class TiltMetric final : public Metric {
@@ -44,7 +44,7 @@ class TiltMetric final : public Metric {
     mean_rad_ += off_rad / static_cast<double>(++count_);
     square_rad2_ += off_rad * (forward_rad - mean_rad_);
     max_rad_ = std::max(max_rad_, tilt_rad);
-    if (tilt_rad > motion::fallen_rad && std::isnan(fell_s_)) fell_s_ = now_s;
+    if (tilt_rad > fallen_rad && std::isnan(fell_s_)) fell_s_ = now_s;
   }
 
   void visit_state(sim::StateArchive& archive, History) override {

@@ -438,15 +438,14 @@ void TimeControl::restore_with_clients(const Snapshot& snapshot, const std::stri
   };
   const auto written = written_.find(snapshot.step);
   if (written == written_.end() || written->second != hash_of(snapshot.state))
-    viewer::refuse("was not written by this run before " + place());
+    refuse("was not written by this run before " + place());
   // Unlike in rewind(), a later start would lack reports for some client.  At the start of the run no client had any.
   const std::int64_t needed = inputs_.needed_from(snapshot.step, max_lead_s * steps_per_second_);
   const auto base = ring_.newest_until(std::max(needed, first_step_));
   if (!base)
-    viewer::refuse(ring_.oldest()
-                       ? fmt::format("t = {:.6g} s precedes this run's history, which starts at {:.6g} s",
-                                     snapshot.time_s(), sim::to_seconds(world_.step_time() * *ring_.oldest()))
-                       : "this run keeps no history (see --rewind-s)");
+    refuse(ring_.oldest() ? fmt::format("t = {:.6g} s precedes this run's history, which starts at {:.6g} s",
+                                        snapshot.time_s(), sim::to_seconds(world_.step_time() * *ring_.oldest()))
+                          : "this run keeps no history (see --rewind-s)");
   rewind_to(*base, snapshot.step, run_on);
 }
 

@@ -24,9 +24,8 @@ FreeKeys::FreeKeys(sim::JointMotion motion, const sim::VehicleConfig& vehicle)
   const auto refuse = [&](const std::string& why) {
     throw sim::ConfigError({"motion '" + motion_.name + "': its keys cannot be searched: " + why});
   };
-  if (!motion_.loop) viewer::refuse("it must have 'loop: true'");
-  if (motion_.keys.size() < 2 || !motion_.frames.empty())
-    viewer::refuse("it must have two keys or more, and no frames");
+  if (!motion_.loop) refuse("it must have 'loop: true'");
+  if (motion_.keys.size() < 2 || !motion_.frames.empty()) refuse("it must have two keys or more, and no frames");
   // Poses become values of the keys.
   for (sim::MotionKey& key : motion_.keys) {
     key.joints = motion_.values_of(key);
@@ -40,8 +39,7 @@ FreeKeys::FreeKeys(sim::JointMotion motion, const sim::VehicleConfig& vehicle)
   }
   add_values();
   if (numbers_.size() > max_numbers)
-    viewer::refuse("they are " + std::to_string(numbers_.size()) + " numbers, more than " +
-                   std::to_string(max_numbers));
+    refuse("they are " + std::to_string(numbers_.size()) + " numbers, more than " + std::to_string(max_numbers));
 }
 
 void FreeKeys::add_values() {

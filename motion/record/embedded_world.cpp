@@ -48,13 +48,13 @@ void check_complete(ConfigNode world, const std::string& who) {
   };
   if (world.kind != ConfigNode::Kind::map) throw sim::ConfigError({who + " must be a map, the keys of a world file"});
   for (const char* key : {"include", "plugins", "processes"})
-    if (world.find(key) != nullptr) viewer::refuse("has the key '" + std::string(key) + "'");
+    if (world.find(key) != nullptr) refuse("has the key '" + std::string(key) + "'");
   if (const ConfigNode* vehicles = world.find("vehicles"))
     for (const ConfigNode& vehicle : vehicles->items)
       if (const ConfigNode* file = vehicle.find("file"))
-        viewer::refuse("names the file '" + sim::shortened(sim::printable(file->scalar)) + "'");
+        refuse("names the file '" + sim::shortened(sim::printable(file->scalar)) + "'");
   const auto refuse_file = [&](const std::string& path) {
-    viewer::refuse("names the file '" + sim::shortened(sim::printable(path)) + "'");
+    refuse("names the file '" + sim::shortened(sim::printable(path)) + "'");
   };
   sim::visit_data_files(world, [&](const std::string& path, const std::string*) { refuse_file(path); });
   visit_composed_names(world, "", sim::data_file_keys(), refuse_file);

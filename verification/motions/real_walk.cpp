@@ -14,7 +14,7 @@ namespace verification {
 
 namespace {
 
-constexpr double motion::rad_per_deg = std::numbers::pi / 180;
+constexpr double rad_per_deg = std::numbers::pi / 180;
 /// Endings of the servos of a leg.
 constexpr const char* leg_joints[] = {"_swing", "_flap", "_knee"};
 
@@ -39,8 +39,7 @@ std::vector<RealWalk> fast_forward_turns() {
   const double deg[][2] = {{5, 22.3512},  {10, 43.4592}, {15, 59.1784}, {20, 69.4455},
                            {25, 78.8782}, {30, 88.8216}, {35, 91.5167}};
   std::vector<RealWalk> walks;
-  for (const auto& [turn, speed] : deg)
-    walks.push_back({{.turn_rad = turn * motion::rad_per_deg}, speed * motion::rad_per_deg});
+  for (const auto& [turn, speed] : deg) walks.push_back({{.turn_rad = turn * rad_per_deg}, speed * rad_per_deg});
   return walks;
 }
 

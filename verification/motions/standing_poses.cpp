@@ -39,7 +39,7 @@ StandingPoses standing_poses(const sim::WorldConfig& world, const std::string& v
       pose.emplace_back(leg.name + "_flap", drawn(leg.flap_limits, 0, max_flap_rad));
       pose.emplace_back(leg.name + "_knee", drawn(leg.knee_limits, 0, max_knee_rad));
     }
-    const motion::ConnectWorld trial(reduced, vehicle, held_pose("pose", vehicle, pose), pose_settle_s);
+    const motion::ConnectWorld trial(reduced, vehicle, motion::held_pose("pose", vehicle, pose), pose_settle_s);
     if (trial.stands() && !trial.touches()) result.poses.push_back(pose);
   }
   return result;

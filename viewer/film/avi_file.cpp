@@ -40,7 +40,7 @@ std::string chunk(const std::string& name, const std::string& content) {
 
 AviFile::AviFile(std::string file, const FilmFormat& format)
     : file_(std::move(file)), part_(file_ + ".part"), format_(format) {
-  const bridges::FileDescriptor part = make_part_file<FilmError>(file_, part_);
+  const bridges::FileDescriptor part = experiment::make_part_file<FilmError>(file_, part_);
   out_ = fdopen(fcntl(part.number(), F_DUPFD_CLOEXEC, 0), "wb");
   if (out_ == nullptr) throw FilmError(file_ + ": cannot be written: " + std::strerror(errno));
   try {

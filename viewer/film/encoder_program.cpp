@@ -58,7 +58,7 @@ bool has_ffmpeg() {
 
 EncoderProgram::EncoderProgram(std::string file, const FilmFormat& format, const std::vector<std::string>& codec)
     : file_(std::move(file)), part_(file_ + ".part"), log_(file_ + ".log") {
-  for (const std::string* path : {&part_, &log_}) make_part_file<FilmError>(file_, *path);
+  for (const std::string* path : {&part_, &log_}) experiment::make_part_file<FilmError>(file_, *path);
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw FilmError(file_ + ": no pipe to ffmpeg: " + std::strerror(errno));
   const bridges::FileDescriptor read_end(ends[0]);

@@ -65,7 +65,7 @@ std::string forms_text(const sim::World& world, const experiment::DriveProfile& 
       kinds = Json::array();
       const experiment::DrivenVehicle driven = experiment::driven_vehicle(bridges::vehicle_message(*vehicle));
       for (const experiment::DriveKind kind : experiment::drive_kinds(profile, driven))
-        kinds.push_back({{"kind", std::string(sim::word_of(drive_kind_words, kind))},
+        kinds.push_back({{"kind", std::string(sim::word_of(experiment::drive_kind_words, kind))},
                          {"axes", experiment::DriveMapping(profile, driven, kind).axes()}});
     }
     if (!kinds.empty()) drives[vehicle->name()] = kinds;

@@ -71,7 +71,7 @@ void PageDrive::take(int client, const Request& request, const sim::World& world
   if (seat == seats_.end()) {
     std::optional<experiment::DriveKind> kind;
     if (!request.kind.empty()) {
-      kind = sim::value_of(drive_kind_words, request.kind);
+      kind = sim::value_of(experiment::drive_kind_words, request.kind);
       if (!kind)
         throw experiment::DriveError("'kind' of drive must be twist, tilt, helm, thrust or joints, got '" +
                                      sim::shortened(sim::printable(request.kind)) + "'");

@@ -297,7 +297,7 @@ int drive(const DriveArguments& arguments) {
     RemoteVehicle vehicle(arguments);
     if (const auto failed = find_vehicle(arguments, vehicle)) return *failed;
     std::optional<experiment::DriveKind> kind;
-    if (!arguments.kind.empty()) kind = sim::value_of(drive_kind_words, arguments.kind);
+    if (!arguments.kind.empty()) kind = sim::value_of(experiment::drive_kind_words, arguments.kind);
     experiment::Driver driver(profile, *vehicle.description(), kind);
     if (by_keys) {
       std::cerr << fmt::format("hold '{}' to move, '{}' centers, Ctrl-C ends\n", profile.keys.hold,

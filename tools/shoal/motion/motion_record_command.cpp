@@ -80,7 +80,7 @@ void check_files(const RecordArguments& arguments, bool is_over) {
       return false;
     }
   };
-  if (fs::exists(take) && (!is_over || !motion::is_recording()))
+  if (fs::exists(take) && (!is_over || !is_recording()))
     throw command_line::UsageError("'" + take + "' exists" + (is_over ? " and is not a recording" : "") +
                                    "; --overwrite replaces it");
   for (const std::string& file : {arguments.file, take}) check_frames(file, false);
