@@ -9,6 +9,7 @@
 #include "sim/base/record_hash.hpp"
 #include "sim/base/state_hash.hpp"
 #include "sim/base/thread_pool.hpp"
+#include "sim/device/unhashed_until_used.hpp"
 #include "sim/world/world_parts.hpp"
 
 namespace sim {
@@ -78,7 +79,8 @@ std::uint64_t StepHash::of_state(WorldParts& parts, ThreadPool* threads) {
       StateArchive archive = StateArchive::quick_hasher();
       parts.visit_vehicle(archive, *vehicles[i]);
       of_block.add(archive.hash());
-      for (MountedDevice* device : vehicles[i]->devices()) of_block.add(of_device(*device));
+      for (MountedDevice* device : vehicles[i]->devices())
+        if (!is_unused(device->sensor())) of_block.add(of_device(*device));
     }
     return of_block.value();
   }));

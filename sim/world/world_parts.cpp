@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "sim/device/unhashed_until_used.hpp"
+
 namespace sim {
 
 namespace {
@@ -45,6 +47,7 @@ void WorldParts::visit_state(StateArchive& archive) {
   for (const auto& vehicle : entities.vehicles()) {
     visit_vehicle(archive, *vehicle);
     for (MountedDevice* device : vehicle->devices()) {
+      if (archive.hashing() && is_unused(device->sensor())) continue;
       archive.section(device->full_name());
       archive(*device);
     }

@@ -33,6 +33,24 @@ function compare(points, expected) {
   points.forEach((point, i) => point.forEach((x, k) => near(x, expected[i][k], 0.01, `point ${i}, axis ${k}`)));
 }
 
+describe('lights', () => {
+  it('are the colors of their parts from the first report on, until the time jumps', async () => {
+    const script = scenes.land(), [rover] = script.scene.vehicles;
+    rover.devices.push({name: 'lights', type: 'led', body: 0, pose: scenes.at(0, 0, 0), channels: ['rover1.lights']});
+    script.scene.bodies[0].parts[1].name = 'lamp';
+    await withPage(script, async (page, server) => {
+      await show(page, server, 0);
+      const color = () => page.evaluate(() => window.shoal.presentColor('rover1/chassis/lamp'));
+      assert.equal(await color(), 0xe8ecef);
+      const report = {utime: 0, light: ['a'], intensity: [1], part: ['chassis/lamp'], color: [0xff8000]};
+      await server.publishOnceWanted('rover1.lights', 'led_t', 0.1e6, report);
+      await page.waitForFunction(() => window.shoal.presentColor('rover1/chassis/lamp') === 0xff8000);
+      await show(page, server, 0);  // a jump: what belongs to another time goes
+      await page.waitForFunction(() => window.shoal.presentColor('rover1/chassis/lamp') === 0xe8ecef);
+    }, SMALL);
+  });
+});
+
 describe('returns', () => {
   it('of lidars are where the sensor was when it measured, while it moves', async () => {
     const script = scenes.land(), [rover] = script.scene.vehicles;

@@ -42,6 +42,7 @@ export class Bodies {
     this.root = new Group();
     scene.add(this.root);
     this.shapes = 'drawn';
+    this.painted = new Map();
     this.onShape = () => {};  // a mesh or terrain has come
     this.clear();
   }
@@ -106,7 +107,7 @@ export class Bodies {
   gather() {
     const groups = new Map();
     for (const body of this.list)
-      for (const part of this.partsOf(body)) {
+      for (const [number, part] of this.partsOf(body).entries()) {
         if (part.shape === 'plane') this.addPlane(body, part);
         const shape = ['mesh', 'terrain'].includes(part.shape) ? {key: part.asset, scale: [1, 1, 1]} :
             part.shape === 'plane'                             ? null :
@@ -115,7 +116,8 @@ export class Bodies {
         const key = `${shape.key} ${Surfaces.key(part, false)} ${body.fixed}`;
         if (!groups.has(key)) groups.set(key, {part, fixed: body.fixed, geometry: shape.geometry, instances: []});
         const X_BP = matrixOf(part.pose, new Vector3(...shape.scale));
-        groups.get(key).instances.push({body: body.index, X_BP, color: this.colorOf(body, part)});
+        const name = `${body.name}/${part.name || number + 1}`;
+        groups.get(key).instances.push({body: body.index, X_BP, name, color: this.colorOf(body, part)});
       }
     for (const group of groups.values())
       if (group.geometry)
@@ -144,7 +146,7 @@ export class Bodies {
     const contours = group.part.shape === 'terrain';
     const mesh = new InstancedMesh(group.geometry, this.surfaces.get(group.part, {contours}), group.instances.length);
     mesh.instanceMatrix.setUsage(DynamicDrawUsage);
-    group.instances.forEach((instance, i) => mesh.setColorAt(i, instance.color));
+    this.paintGroup(mesh, group.instances);
     mesh.frustumCulled = false;
     mesh.castShadow = this.shapes !== 'wire';
     mesh.receiveShadow = true;
@@ -154,6 +156,34 @@ export class Bodies {
     this.root.add(mesh);
     this.groups.push(group);
     this.place(group);
+  }
+
+  paintGroup(mesh, instances) {
+    const color = new Color();
+    instances.forEach(({name, color: own}, i) => {
+      const painted = this.shapes === 'collision' ? undefined : this.painted.get(name);
+      mesh.setColorAt(i, painted === undefined ? own : color.setHex(painted));
+    });
+    mesh.instanceColor.needsUpdate = true;
+  }
+
+  /** Sets the colors, 0xrrggbb, of some parts by name, in place of all that were set before. */
+  paint(colors) {
+    const names = new Set([...colors.keys(), ...this.painted.keys()]);
+    this.painted = new Map(colors);
+    for (const {mesh, instances} of this.groups)
+      if (instances.some(({name}) => names.has(name))) this.paintGroup(mesh, instances);
+  }
+
+  /** Present color of a part by its name, 0xrrggbb; null: it is not drawn. */
+  presentColor(name) {
+    for (const {mesh, instances} of this.groups) {
+      const i = instances.findIndex((instance) => instance.name === name), color = new Color();
+      if (i < 0) continue;
+      mesh.getColorAt(i, color);
+      return color.getHex();
+    }
+    return null;
   }
 
   addPlane(body, part) {

@@ -25,6 +25,7 @@ export class Instruments {
     this.returns = new Returns(app, this.poses);
     this.sonars = null;
     this.ranges = null;
+    this.lights = null;
     this.plots = new Plots(app);
     this.images = new LazyView('images', 'Images', async () => new (await import('./image_panel.js')).Images(app));
     this.clocks = new LazyView('clocks', 'Clocks', async () => new (await import('./clocks.js')).Clocks(app));
@@ -90,7 +91,7 @@ export class Instruments {
     this.key = null;
   }
 
-  /** Loads what draws images of sonars and ranges, if the scene has devices that give them. */
+  /** Loads what draws images of sonars, ranges and lights, if the scene has devices that give them. */
   async loadParts({vehicles}) {
     const has = (types) => vehicles.some(({devices}) => devices.some((device) => types.includes(device.type)));
     if (has(['imaging_sonar']) && !this.sonars) {
@@ -100,6 +101,10 @@ export class Instruments {
     if (has(RANGING_DEVICES) && !this.ranges) {
       const {Ranges} = await import('./ranges.js');
       this.ranges ??= new Ranges(this.app, this.poses);
+    }
+    if (has(['led']) && !this.lights) {
+      const {Lights} = await import('./lights.js');
+      this.lights ??= new Lights(this.app, this.poses);
     }
     this.key = null;  // to subscribe
     this.app.dirty = true;
@@ -111,6 +116,7 @@ export class Instruments {
     this.traffic.clear();
     this.plots.restart();
     this.distances.clear();
+    this.lights?.clear();
     this.listChanged();
   }
 
@@ -119,6 +125,7 @@ export class Instruments {
     this.returns.rewind(time_us);
     this.sonars?.rewind(time_us);
     this.ranges?.rewind(time_us);
+    this.lights?.rewind();
   }
 
   listChanged() { this.listStale = true; }
@@ -138,9 +145,10 @@ export class Instruments {
       this.returns.subscribe(options.get('returns'), options.get('rays'));
       this.sonars?.subscribe(options.get('returns'));
       this.ranges?.subscribe(options.get('ranges'), RANGING_DEVICES);
+      this.lights?.subscribe();
     }
     this.dock.update(now_ms);
-    const changed = [this.returns, this.sonars, this.ranges].map((part) => part?.update(now_ms));
+    const changed = [this.returns, this.sonars, this.ranges, this.lights].map((part) => part?.update(now_ms));
     return changed.includes(true);
   }
 

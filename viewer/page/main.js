@@ -538,6 +538,7 @@ async function start() {
       setView: (text) => app.setView(text),
       select: (name) => app.select(name),
       returnsOf: (channel) => app.instruments.returns.pointsOf(channel),
+      presentColor: (name) => app.bodies.presentColor(name),
       raysOf: (channel) => app.instruments.returns.pointsOf(channel, 'rays'),
       sonarPixel: (channel, u, v) => app.instruments.sonars.pixelOf(channel, u, v),
       modems: () => app.instruments.traffic.modems.rows(),
