@@ -26,6 +26,15 @@ double soft(double share) {
 }
 constexpr double soft_peak = 1.5;
 
+/// Returns the first device of this type that fits.
+template <typename Device, typename Fits>
+Device* first_device(const sim::Vehicle& vehicle, const Fits& fits) {
+  for (const sim::MountedDevice* device : vehicle.devices())
+    if (const auto* found = dynamic_cast<const Device*>(device->sensor()); found != nullptr && fits(*found))
+      return const_cast<Device*>(found);  // devices of the vehicle command each other
+  throw std::logic_error("the vehicle has lost a device");
+}
+
 }  // namespace
 
 void MotionPlayer::MotionFile::read(sim::ParamReader& in) {
@@ -91,7 +100,13 @@ std::vector<MotionPlayer::Tracks> MotionPlayer::tracks_of(const Params& params) 
     tracks.duration_s = std::ceil(motion.end_s() / motion.frame_s - frame_rounding) * motion.frame_s;
     tracks.loop = motion.loop;
     tracks.start = motion.start;
+    check_signals(motion);
+    for (const sim::MotionSound& sound : motion.sounds) tracks.sounds.push_back({sound, nullptr, 0});
     for (sim::MotionTrack& track : motion.tracks()) {
+      if (motion.is_light(track.joint)) {
+        tracks.lights.push_back({std::move(track), nullptr, 0});
+        continue;
+      }
       const auto number = group_->servos().find(track.joint);
       if (!number)
         throw std::runtime_error("motion '" + motion.name + "' names joint '" +
@@ -102,6 +117,40 @@ std::vector<MotionPlayer::Tracks> MotionPlayer::tracks_of(const Params& params) 
     }
   }
   return motions;
+}
+
+void MotionPlayer::check_signals(const sim::JointMotion& motion) const {
+  const auto check = [&](const std::vector<std::string>& known, const std::string& name, const char* what) {
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw std::runtime_error("motion '" + motion.name + "' names " + what + " '" +
+                               sim::shortened(sim::printable(name)) + "', which the vehicle does not have" +
+                               sim::did_you_mean(name, known) + "; known: " + sim::list_text(known));
+  };
+  const std::vector<std::string> lights = lights_of(vehicle_.config()), sounds = sounds_of(vehicle_.config());
+  for (const std::string& light : motion.lights) check(lights, light, "light");
+  for (const sim::MotionSound& sound : motion.sounds) check(sounds, sound.sound, "sound");
+}
+
+void MotionPlayer::set_light(LightTrack& light) const {
+  if (light.led == nullptr)
+    light.led = first_device<Led>(vehicle_, [&](const Led& led) {
+      light.light = led.find(light.track.joint).value_or(0);
+      return led.find(light.track.joint).has_value();
+    });
+  light.led->set(light.light, light.track.value_at(playhead_s_));
+}
+
+void MotionPlayer::play_sounds(double from_s, double to_s, bool with_end, sim::Time now) {
+  for (SoundTime& time : motions_[number_].sounds) {
+    const double at_s = time.sound.at_s;
+    if (at_s < from_s || at_s > to_s || (at_s == to_s && !with_end)) continue;
+    if (time.speaker == nullptr)
+      time.speaker = first_device<Speaker>(vehicle_, [&](const Speaker& speaker) {
+        time.number = speaker.find(time.sound.sound).value_or(0);
+        return speaker.find(time.sound.sound).has_value();
+      });
+    time.speaker->play(time.number, time.sound.volume, now);
+  }
 }
 
 void MotionPlayer::change(const Params& params) {
@@ -260,6 +309,7 @@ void MotionPlayer::approach(const sim::ActContext& context) {
 
 void MotionPlayer::advance(const sim::ActContext& context) {
   const double rounding_s = tracks().frame_s * frame_rounding;
+  double sounded_s = playhead_s_;
   playhead_s_ += rate_ * context.step_s;
   // Rounding does not add up.
   if (const double frame_s = tracks().frame_s;
@@ -268,11 +318,15 @@ void MotionPlayer::advance(const sim::ActContext& context) {
   // At the end: repeat, or stop there.
   const double length_s = to_s_ - from_s_;
   while (playhead_s_ > to_s_ + rounding_s && repeats_left_ != 0 && length_s > rounding_s) {
+    play_sounds(sounded_s, to_s_, true, context.now);
+    sounded_s = from_s_;
     playhead_s_ -= length_s;
     if (repeats_left_ > 0) --repeats_left_;
   }
   const bool is_at_end = playhead_s_ >= to_s_ - rounding_s && repeats_left_ == 0;
   if (is_at_end) playhead_s_ = to_s_;
+  play_sounds(sounded_s, playhead_s_, is_at_end, context.now);
+  for (LightTrack& light : motions_[number_].lights) set_light(light);
   values_at(tracks(), playhead_s_, values_);
   group_->command(values_, context.now, context.step_s);
   if (!is_at_end && length_s > rounding_s) return;

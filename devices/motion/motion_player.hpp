@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "devices/motion/joint_group.hpp"
+#include "devices/signals/led.hpp"
+#include "devices/signals/speaker.hpp"
 #include "sim/motion/motion.hpp"
 
 namespace devices {
@@ -21,11 +23,12 @@ struct FirstPlay {
   void read(sim::ParamReader& in);
 };
 
-/// Player of motion files on a group of joints.  Its playhead is part of the state of the world.
+/// Player of motion files on a group of joints, and on the lights and the speaker of the vehicle.  Its playhead is part
+/// of the state of the world.
 ///
 /// A motion starts with an approach from the present set points to its first values.  The values are those of the
-/// tracks at whole frames of the motion, and linear between them, as a robot plays frames.  An emergency stop and a
-/// loss of power stop it.
+/// tracks at whole frames of the motion, and linear between them, as a robot plays frames.  Lights are as
+/// they were until the approach has ended.  An emergency stop and a loss of power stop it.
 class MotionPlayer final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Player of motion files on a group of joints.";
@@ -90,6 +93,17 @@ class MotionPlayer final : public sim::Sensor {
   const std::string& motion_name() const { return name_; }
 
  private:
+  // Their devices are set at first use: devices of the vehicle are built one after the other.
+  struct LightTrack {
+    sim::MotionTrack track;
+    Led* led = nullptr;
+    std::size_t light = 0;  ///< its number in the device
+  };
+  struct SoundTime {
+    sim::MotionSound sound;
+    Speaker* speaker = nullptr;
+    std::int64_t number = 0;  ///< of the sound in the device
+  };
   /// Tracks of a motion, by the number of their servo in the group.
   struct Tracks {
     std::string name;
@@ -97,9 +111,14 @@ class MotionPlayer final : public sim::Sensor {
     bool loop = false;
     sim::MotionStart start;
     std::vector<std::pair<std::size_t, sim::MotionTrack>> tracks;
+    std::vector<LightTrack> lights;
+    std::vector<SoundTime> sounds;
   };
 
   const Tracks& tracks() const { return motions_[number_]; }
+  void check_signals(const sim::JointMotion& motion) const;
+  void set_light(LightTrack& light) const;
+  void play_sounds(double from_s, double to_s, bool with_end, sim::Time now);
   std::vector<Tracks> tracks_of(const Params& params) const;
   const Tracks& motion_named(const std::string& name) const;
   void check_part(const Tracks& motion, double from_s, double to_s) const;

@@ -51,6 +51,7 @@ void FreeKeys::add_values() {
   for (std::size_t k = 0; k < motion_.keys.size(); ++k)
     for (std::size_t j = 0; j < motion_.keys[k].joints.size(); ++j) {
       const std::string& joint = motion_.keys[k].joints[j].first;
+      if (motion_.is_light(joint)) continue;
       const double value = motion_.keys[k].joints[j].second;
       const auto servo = std::find_if(servos.begin(), servos.end(),
                                       [&](const devices::ServoOfVehicle& one) { return one.is_called(joint); });

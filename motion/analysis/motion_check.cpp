@@ -13,6 +13,8 @@
 #include "devices/motion/joint_group.hpp"
 #include "devices/motion/servo_bank.hpp"
 #include "motion/analysis/motion_edit.hpp"
+#include "devices/signals/led.hpp"
+#include "devices/signals/speaker.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/motion/motion_frames.hpp"
 
@@ -131,6 +133,31 @@ void check_two_joints(const std::vector<sim::MotionTrack>& frames, const std::ve
   }
 }
 
+bool has(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+void check_light(const sim::MotionTrack& track, const std::vector<std::string>& lights,
+                 std::vector<MotionFinding>& findings) {
+  if (!has(lights, track.joint)) findings.push_back({MotionRule::unknown_light, track.joint});
+  Stretch range(MotionRule::light_range, track.joint, findings);
+  for (const sim::TrackKey& key : track.keys) {
+    const double limit = std::clamp(key.value, 0.0, 1.0);
+    range.add(key.at_s, key.value, limit, std::abs(key.value - limit));
+  }
+}
+
+void check_sounds(const sim::JointMotion& motion, const sim::VehicleConfig& vehicle,
+                  std::vector<MotionFinding>& findings) {
+  const std::vector<std::string> known = devices::sounds_of(vehicle);
+  const double end_s = motion.end_s();
+  for (const sim::MotionSound& sound : motion.sounds) {
+    if (!has(known, sound.sound)) findings.push_back({MotionRule::unknown_sound, sound.sound, sound.at_s});
+    if (sound.at_s > end_s + rounding)
+      findings.push_back({MotionRule::late_sound, sound.sound, sound.at_s, 0, sound.at_s, end_s});
+  }
+}
+
 std::string shown(double value, bool is_angle) {
   return is_angle ? fmt::format("{:.2f} deg", value * 180 / std::numbers::pi) : fmt::format("{:.4g}", value);
 }
@@ -144,6 +171,17 @@ std::string MotionFinding::text() const {
   switch (rule) {
     case MotionRule::unknown_joint:
       return "joint '" + joint + "': the vehicle has no servo of this name or alias";
+    case MotionRule::unknown_light:
+      return "light '" + joint + "': no led of the vehicle has a light of this name";
+    case MotionRule::unknown_sound:
+      return "sound '" + joint + "'" + fmt::format(" at {:.3f} s: ", at_s) +
+             "no speaker of the vehicle has a sound of this name";
+    case MotionRule::late_sound:
+      return "sound '" + joint + "'" +
+             fmt::format(" at {:.3f} s is never played: the motion ends at {:.3f} s", at_s, limit);
+    case MotionRule::light_range:
+      return "light '" + joint + "'" + fmt::format(" at {:.3f} s: ", at_s) + shown(value, false) +
+             " is not within 0 to 1";
     case MotionRule::low:
       return who + is + " is below its lower limit, " + may_be;
     case MotionRule::high:
@@ -165,12 +203,16 @@ std::string MotionFinding::text() const {
 std::vector<MotionFinding> check_motion(const sim::JointMotion& motion, const sim::VehicleConfig& vehicle) {
   std::vector<MotionFinding> findings;
   const Servos servos(vehicle);
+  const std::vector<std::string> lights = devices::lights_of(vehicle);
+  check_sounds(motion, vehicle, findings);
   // Sample the joints that the vehicle has.
   std::vector<sim::MotionTrack> tracks;
   std::vector<std::size_t> servo_of;
   for (sim::MotionTrack& track : motion.tracks()) {
     const auto servo = servos.find(track.joint);
-    if (servo) {
+    if (motion.is_light(track.joint)) {
+      check_light(track, lights, findings);
+    } else if (servo) {
       tracks.push_back(std::move(track));
       servo_of.push_back(*servo);
     } else {
@@ -203,7 +245,7 @@ sim::JointMotion mended(const sim::JointMotion& motion, const sim::VehicleConfig
   std::vector<double> times{0};
   const auto limits_of = [&](const sim::MotionTrack& track) {
     const auto servo = servos.find(track.joint);
-    return servo ? servos.limits(*servo) : Limits{};
+    return motion.is_light(track.joint) ? Limits{0, 1} : servo ? servos.limits(*servo) : Limits{};
   };
   // Clamp the values.
   for (sim::MotionTrack& track : tracks) {

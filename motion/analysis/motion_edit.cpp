@@ -118,11 +118,26 @@ void add_after(std::vector<MotionTrack>& tracks, const std::vector<MotionTrack>&
   }
 }
 
-/// Adds the sliders of another motion.
-void add_sliders(JointMotion& motion, const JointMotion& other) {
-  for (const std::string& slider : other.sliders)
-    if (std::find(motion.sliders.begin(), motion.sliders.end(), slider) == motion.sliders.end())
-      motion.sliders.push_back(slider);
+/// Adds the names of the sliders and lights of another motion.
+void add_units(JointMotion& motion, const JointMotion& other) {
+  const auto add = [](std::vector<std::string>& names, const std::vector<std::string>& others) {
+    for (const std::string& name : others)
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  add(motion.sliders, other.sliders);
+  add(motion.lights, other.lights);
+}
+
+/// Moves sounds in time; `time_of` returns the new time, or a negative one for a sound that is left out.
+void move_sounds(JointMotion& motion, const std::function<double(double)>& time_of) {
+  for (sim::MotionSound& sound : motion.sounds) sound.at_s = time_of(sound.at_s);
+  std::erase_if(motion.sounds, [](const sim::MotionSound& sound) { return sound.at_s < 0; });
+}
+
+/// Adds the sounds of a motion that starts at `at_s`.
+void add_sounds(JointMotion& motion, const JointMotion& other, double at_s) {
+  for (const sim::MotionSound& sound : other.sounds)
+    motion.sounds.push_back({sound.at_s + at_s, sound.sound, sound.volume});
 }
 
 std::string mirrored_name(const std::string& joint, const MirrorRule& rule) {
@@ -223,6 +238,7 @@ JointMotion trimmed(const JointMotion& motion, double from_s, double to_s) {
   // What changed before the part is so at its start.
   std::erase_if(left.changes, [=](const sim::MotionChange& change) { return change.at_s > to_s; });
   for (sim::MotionChange& change : left.changes) change.at_s = std::max(0.0, change.at_s - from_s);
+  move_sounds(left, [=](double at_s) { return at_s >= from_s && at_s <= to_s ? at_s - from_s : -1; });
   return left;
 }
 
@@ -240,6 +256,7 @@ JointMotion without(const JointMotion& motion, double from_s, double to_s) {
   });
   for (sim::MotionChange& change : left.changes)
     change.at_s = change.at_s < to_s ? std::min(change.at_s, from_s) : change.at_s - to_s + from_s;
+  move_sounds(left, [=](double at_s) { return at_s < from_s ? at_s : at_s < to_s ? -1 : at_s - to_s + from_s; });
   return left;
 }
 
@@ -248,7 +265,7 @@ JointMotion appended(const JointMotion& motion, const JointMotion& other, double
   JointMotion both = motion;
   for (const sim::MotionPose& pose : other.poses)
     if (motion.find_pose(pose.name) == nullptr) both.poses.push_back(pose);
-  add_sliders(both, other);
+  add_units(both, other);
   // Joints of the first motion hold during the pause's start, and move to the other's first values within it.
   const double start_s = motion.end_s() + gap_s;
   std::vector<MotionTrack> tracks = part(motion, 0, motion.end_s());
@@ -257,6 +274,7 @@ JointMotion appended(const JointMotion& motion, const JointMotion& other, double
     change.at_s += start_s;
     both.changes.push_back(std::move(change));
   }
+  add_sounds(both, other, start_s);
   return with_tracks(both, std::move(tracks), unchanged);
 }
 
@@ -273,7 +291,7 @@ JointMotion merged(const JointMotion& motion, const JointMotion& other, bool rep
       throw EditError("both motions have joint '" + track.joint + "'; --replace takes that of the second");
   }
   JointMotion both = with_tracks(motion, std::move(tracks), unchanged);
-  add_sliders(both, other);
+  add_units(both, other);
   // Both start at the same time.  A change that both have, such as of two parts of one recording, happens once.
   for (const sim::MotionChange& change : other.changes)
     if (std::none_of(motion.changes.begin(), motion.changes.end(), [&](const sim::MotionChange& one) {
@@ -283,6 +301,11 @@ JointMotion merged(const JointMotion& motion, const JointMotion& other, bool rep
       both.changes.push_back(change);
   std::stable_sort(both.changes.begin(), both.changes.end(),
                    [](const auto& a, const auto& b) { return a.at_s < b.at_s; });
+  for (const sim::MotionSound& sound : other.sounds)
+    if (std::none_of(motion.sounds.begin(), motion.sounds.end(), [&](const sim::MotionSound& one) {
+          return std::abs(one.at_s - sound.at_s) < same_time_s && one.sound == sound.sound;
+        }))
+      both.sounds.push_back(sound);
   return both;
 }
 
@@ -297,6 +320,7 @@ JointMotion mirrored(const JointMotion& motion, const MirrorRule& rule) {
       joint = mirrored_name(joint, rule);
     }
   };
+  for (std::string& light : changed.lights) light = mirrored_name(light, rule);
   for (sim::MotionPose& pose : changed.poses) mirror(pose.joints);
   for (sim::MotionKey& key : changed.keys) mirror(key.joints);
   for (MotionTrack& track : changed.frames) {
@@ -317,7 +341,10 @@ JointMotion with_mirrored_half(const JointMotion& motion, const MirrorRule& rule
       tracks.push_back({track.joint, {{0, track.keys.front().value, Easing::linear}}});
   tracks = joined(std::move(tracks), second, half_s, motion.frame_s);
   add_after(tracks, second, half_s);
-  return with_tracks(motion, std::move(tracks), unchanged);
+  JointMotion both = motion;
+  add_units(both, other);
+  add_sounds(both, other, half_s);
+  return with_tracks(both, std::move(tracks), unchanged);
 }
 
 JointMotion shifted(const JointMotion& motion, double by_s, const std::vector<std::string>& joints) {
@@ -334,8 +361,9 @@ JointMotion shifted(const JointMotion& motion, double by_s, const std::vector<st
   }
   JointMotion moved =
       with_tracks(motion, std::move(tracks), [=](double t_s) { return joints.empty() ? t_s + by_s : t_s; });
-  if (joints.empty())
-    for (sim::MotionChange& change : moved.changes) change.at_s = std::max(0.0, change.at_s + by_s);
+  if (!joints.empty()) return moved;
+  for (sim::MotionChange& change : moved.changes) change.at_s = std::max(0.0, change.at_s + by_s);
+  move_sounds(moved, [=](double t_s) { return std::max(0.0, t_s + by_s); });
   return moved;
 }
 
@@ -346,6 +374,7 @@ JointMotion stretched(const JointMotion& motion, double factor) {
     for (TrackKey& key : track.keys) key.at_s *= factor;
   JointMotion changed = with_tracks(motion, std::move(tracks), [=](double t_s) { return t_s * factor; });
   for (sim::MotionChange& change : changed.changes) change.at_s *= factor;
+  move_sounds(changed, [=](double t_s) { return t_s * factor; });
   return changed;
 }
 

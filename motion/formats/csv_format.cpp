@@ -34,11 +34,12 @@ sim::JointMotion read_csv(const MotionSource& source, Losses&) {
 
 MotionFormat csv_format() {
   return {.name = "csv",
-          .meaning = "table of time in s and joints in rad or m",
+          .meaning = "table of time in s and joints in rad or m, lights from 0 to 1",
           .endings = {".csv"},
           .head = "t_s,",
           .list = "csv",
           .uses_aliases = false,
+          .holds_lights = true,
           .write = write_csv,
           .read = read_csv};
 }

@@ -30,11 +30,12 @@ struct JointNamesFile {
 /// Reads a file of names of joints.  Throws sim::ConfigError with all errors.
 JointNamesFile load_joint_names(const std::string& path);
 
-/// Joint of a vehicle.
+/// Joint or light of a vehicle.
 struct NamedJoint {
   std::string servo, alias;  ///< alias empty: none
   double rest = 0;           ///< value when a motion does not name it, rad or m
   bool is_slider = false;
+  bool is_light = false;  ///< a light: `servo` is its name, and the value its intensity
 };
 
 /// Names of the joints of a vehicle, in motions and in files of other programs.  Without joints every name is kept.

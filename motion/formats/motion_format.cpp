@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "motion/formats/pose_table.hpp"
 #include "sim/config/message_text.hpp"
@@ -37,13 +38,32 @@ const MotionFormat* motion_format_of_file(const std::string& path, std::string_v
   return nullptr;
 }
 
+namespace {
+
+sim::JointMotion without_lights(const sim::JointMotion& motion, Losses& losses) {
+  const std::size_t count = motion.lights.size();
+  losses.push_back("intensities of " + std::to_string(count) + (count == 1 ? " light" : " lights") + " are not kept");
+  sim::JointMotion kept = motion;
+  const auto is_light = [&](const auto& value) { return motion.is_light(value.first); };
+  for (sim::MotionPose& pose : kept.poses) std::erase_if(pose.joints, is_light);
+  for (sim::MotionKey& key : kept.keys) std::erase_if(key.joints, is_light);
+  std::erase_if(kept.frames, [&](const sim::MotionTrack& track) { return motion.is_light(track.joint); });
+  kept.lights.clear();
+  return kept;
+}
+
+}  // namespace
+
 std::vector<ExportedFile> files_of_motion(const MotionFormat& format, const sim::JointMotion& motion,
                                           const JointNames& names, const FormatOptions& options, Losses& losses) {
   if (format.write == nullptr && format.write_folder == nullptr)
     refuse_motion(motion, std::string("'") + format.name + "' files can only be read");
-  if (motion.tracks().empty()) refuse_motion(motion, "needs a joint");
-  if (format.write_folder != nullptr) return format.write_folder(motion, names, options, losses);
-  return {{"", format.write(motion, names, options, losses)}};
+  std::optional<sim::JointMotion> unlit;
+  if (!format.holds_lights && !motion.lights.empty()) unlit = without_lights(motion, losses);
+  const sim::JointMotion& kept = unlit ? *unlit : motion;
+  if (kept.tracks().empty()) refuse_motion(motion, "needs a joint");
+  if (format.write_folder != nullptr) return format.write_folder(kept, names, options, losses);
+  return {{"", format.write(kept, names, options, losses)}};
 }
 
 std::string bytes_of_motion(const MotionFormat& format, const sim::JointMotion& motion, const JointNames& names,
@@ -69,6 +89,7 @@ sim::JointMotion motion_of_bytes(const MotionFormat& format, const MotionSource&
   for (const sim::MotionTrack& track : motion.tracks()) {
     const NamedJoint* const joint = source.names.find(track.joint);
     if (joint != nullptr && joint->is_slider) motion.sliders.push_back(track.joint);
+    if (joint != nullptr && joint->is_light) motion.lights.push_back(track.joint);
   }
   return motion;
 }

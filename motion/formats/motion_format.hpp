@@ -52,6 +52,7 @@ struct MotionFormat {
   std::string_view head;             ///< first bytes of a file; empty: they do not show the format
   const char* list;                  ///< of names of joints, see JointNames
   bool uses_aliases;                 ///< joints without a name in the list have that of their alias
+  bool holds_lights = false;         ///< else exports leave them out
   /// Returns the file.  Throws sim::ConfigError when the format cannot hold the motion.  Null: not possible.
   std::string (*write)(const sim::JointMotion& motion, const JointNames& names, const FormatOptions& options,
                        Losses& losses);

@@ -43,6 +43,9 @@ void list_losses(const sim::JointMotion& motion, const Keeps& keeps, Losses& los
   if (!keeps.loop && motion.loop) losses.push_back("one cycle of the loop is written: who plays the file repeats it");
   if (!motion.changes.empty())
     losses.push_back(counted(motion.changes.size(), "change") + " of the world are not kept");
+  if (!motion.sounds.empty())
+    losses.push_back(counted(motion.sounds.size(), "sound") + (motion.sounds.size() == 1 ? " is" : " are") +
+                     " not kept");
   if (motion.recorded) losses.push_back("where it was recorded is not kept");
   const sim::MotionStart usual;
   if (!keeps.start && (motion.start.max_velocity != usual.max_velocity || motion.start.min_s != usual.min_s))

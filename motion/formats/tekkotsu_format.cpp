@@ -85,6 +85,9 @@ sim::JointMotion motion_of_keys(const MotionSource& source, const TekkotsuKeys& 
     key.at_s = static_cast<double>(time_ms - start_ms) / 1000;
     key.joints = std::move(values);
   }
+  if (source.names.empty())
+    for (const std::string& joint : keys.order)
+      if (joint.starts_with("LED:")) motion.lights.push_back(joint);
   if (has_early) losses.push_back("keys at time 0 are left out: Tekkotsu replaces them by the values at the start");
   if (has_released) losses.push_back("keys of weight 0 are left out: the joint holds its last value");
   if (has_late)
@@ -115,6 +118,7 @@ std::string write_pos(const sim::JointMotion& motion, const JointNames& names, c
   sim::JointMotion pose;
   pose.name = motion.name;
   pose.sliders = motion.sliders;
+  pose.lights = motion.lights;
   sim::MotionKey& key = pose.keys.emplace_back();
   for (const sim::MotionTrack& track : motion.tracks()) key.joints.emplace_back(track.joint, track.value_at(at_s));
   const PoseTable table = pose_table(pose, names, pos_format(), {}, losses);
@@ -143,6 +147,7 @@ MotionFormat mot_format() {
           .head = "#MSq",
           .list = "tekkotsu",
           .uses_aliases = false,
+          .holds_lights = true,
           .write = write_mot,
           .read = read_mot};
 }
@@ -154,6 +159,7 @@ MotionFormat pos_format() {
           .head = "#POS",
           .list = "tekkotsu",
           .uses_aliases = false,
+          .holds_lights = true,
           .write = write_pos,
           .read = read_pos};
 }

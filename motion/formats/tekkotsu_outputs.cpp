@@ -181,7 +181,8 @@ std::vector<std::string> TekkotsuOutputs::joints_of(const experiment::LineReader
   }
   std::vector<std::string> joints;
   for (const std::string& one : found)
-    if (const auto joint = source_.names.joint_of("tekkotsu", one)) joints.push_back(*joint);
+    if (const auto joint = source_.names.joint_of("tekkotsu", one); joint && source_.names.find(*joint) != nullptr)
+      joints.push_back(*joint);
   if (joints.empty() && std::find(unknown_.begin(), unknown_.end(), name) == unknown_.end() && unknown_.size() < 1000)
     unknown_.push_back(name);
   return joints;

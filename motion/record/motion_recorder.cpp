@@ -109,12 +109,17 @@ sim::JointMotion MotionRecorder::live_motion(MotionStage& stage) {
   sim::JointMotion live;
   live.name = options_.name;
   live.frame_s = frame_s_;
+  std::vector<sim::MotionTrack> lights;
   if (options_.over) {
     live = *options_.over;
     live.loop = false;
     live.changes.clear();
     live.recorded.reset();
     for (sim::MotionTrack& track : options_.over->tracks()) {
+      if (live.is_light(track.joint)) {
+        lights.push_back(std::move(track));
+        continue;
+      }
       const auto joint = group.servos().find(track.joint);
       if (!joint)
         throw sim::ConfigError({"motion '" + live.name + "' names joint '" + sim::printable(track.joint) +
@@ -148,18 +153,23 @@ sim::JointMotion MotionRecorder::live_motion(MotionStage& stage) {
   if (!can_be_extended(live)) {
     live.keys.clear();
     live.ease = sim::Easing::linear;
+    const auto add = [&](const sim::MotionTrack& track) {
+      const std::vector<sim::MotionTrack> frames = sim::sampled({track}, options_.over->end_s(), frame_s_);
+      for (const sim::TrackKey& key : frames.front().keys) add_value(live.keys, key.at_s, track.joint, key.value);
+    };
     for (const auto& track : over_)
-      if (track) {
-        const std::vector<sim::MotionTrack> frames = sim::sampled({*track}, options_.over->end_s(), frame_s_);
-        for (const sim::TrackKey& key : frames.front().keys) add_value(live.keys, key.at_s, track->joint, key.value);
-      }
+      if (track) add(*track);
+    for (const sim::MotionTrack& track : lights) add(track);
     live.frames.clear();
     live.frames_file.clear();
   }
   for (sim::MotionKey& key : live.keys) {
     key.joints = live.values_of(key);
     key.pose.clear();
-    std::erase_if(key.joints, [&](const auto& value) { return is_armed(*group.servos().find(value.first)); });
+    std::erase_if(key.joints, [&](const auto& value) {
+      const auto joint = group.servos().find(value.first);
+      return joint && is_armed(*joint);
+    });
   }
   live.poses.clear();
   std::erase_if(live.keys, [](const sim::MotionKey& key) { return key.joints.empty(); });

@@ -29,7 +29,7 @@ struct JointReader {
     in.read_raw("joints", map, meaning);
   }
 
-  /// Converts values in degrees, except those of sliders.
+  /// Converts values in degrees, except those of sliders and lights.
   JointValues values(const JointMotion& motion, Diagnostics& diagnostics) const {
     JointValues values;
     for (const ConfigNode::Entry& entry : map.entries) {
@@ -58,7 +58,7 @@ struct PoseReader {
     in.require("name");
     in.read_name("name", pose.name, "name of the pose");
     in.require("joints");
-    joints.read(in, "name or alias of a joint: its value");
+    joints.read(in, "name or alias of a joint, or a light: its value");
   }
 };
 
@@ -71,7 +71,7 @@ struct KeyReader {
     in.require("at_s");
     in.read("at_s", key.at_s, between(0, max_motion_s), "time from the start; times of keys increase");
     in.read_reference("pose", key.pose, "pose", "pose whose joints are all set");
-    joints.read(in, "name or alias of a joint: its value, instead of that of the pose");
+    joints.read(in, "name or alias of a joint, or a light: its value, instead of that of the pose");
     Easing ease = Easing::linear;
     in.read_choice("ease", ease, easing_words, "path from the key before of each joint; unset: that of the motion");
     if (in.has("ease")) key.ease = ease;
@@ -116,7 +116,19 @@ JointMotion::~JointMotion() = default;
 
 double JointMotion::unit_of(const std::string& joint) const {
   const bool is_slider = std::find(sliders.begin(), sliders.end(), joint) != sliders.end();
-  return angles == AngleUnit::deg && !is_slider ? rad_per_deg : 1.0;
+  return angles == AngleUnit::deg && !is_slider && !is_light(joint) ? rad_per_deg : 1.0;
+}
+
+bool JointMotion::is_light(const std::string& joint) const {
+  return std::find(lights.begin(), lights.end(), joint) != lights.end();
+}
+
+void MotionSound::read(ParamReader& in) {
+  in.require("at_s");
+  in.read("at_s", at_s, between(0, max_motion_s), "time from the start, within the motion");
+  in.require("sound");
+  in.read_name("sound", sound, "sound of a speaker of the vehicle");
+  in.read("volume", volume, between(1e-6, 1), "share of its greatest sound pressure");
 }
 
 void MotionStart::read(ParamReader& in) {
@@ -147,6 +159,7 @@ void JointMotion::read_keys(ParamReader& in) {
   // Units.
   in.read_choice("angles", angles, {{"deg", AngleUnit::deg}, {"rad", AngleUnit::rad}}, "unit of the values of joints");
   in.read("sliders", sliders, "joints whose values are in m");
+  in.read("lights", lights, "names in `joints` that are lights of the vehicle, with values from 0, off, to 1");
   // How it is played.
   in.read_choice("ease", ease, easing_words, "path between keys that do not say otherwise");
   in.read("loop", loop, "it is repeated until it is stopped");
@@ -168,6 +181,7 @@ void JointMotion::read_keys(ParamReader& in) {
   }
   const bool may_read = in.read_path("frames", frames_file, PathUse::read,
                                      "CSV file of sampled values in rad or m, relative to this file: t_s, then joints");
+  in.read_list("sounds", sounds, "sound", "sounds that a speaker of the vehicle plays");
   std::vector<ChangeReader> change_readers;
   in.read_list("changes", change_readers, "change", "changes of the world during the motion");
   for (ChangeReader& reader : change_readers) changes.push_back(std::move(reader.change));

@@ -12,7 +12,7 @@
 
 namespace sim {
 
-/// Value of each joint by its name, in the order of the file: rad, or m of a slider.
+/// Value of each joint by its name, in the order of the file: rad, m of a slider, or the intensity of a light.
 using JointValues = std::vector<std::pair<std::string, double>>;
 
 /// Pose of a motion file, to which its keys refer by name.
@@ -35,6 +35,14 @@ struct MotionKey {
 struct MotionChange {
   double at_s = 0;
   ConfigNode action;
+};
+
+/// Sound that is played at an instant of a motion.
+struct MotionSound {
+  double at_s = 0;
+  std::string sound;  ///< of a speaker of the vehicle
+  double volume = 1;  ///< share of its greatest sound pressure, > 0 to 1
+  void read(ParamReader& in);
 };
 
 /// How the joints reach the first values of a motion.
@@ -61,6 +69,7 @@ struct JointMotion {
   std::string name, vehicle, description;
   AngleUnit angles = AngleUnit::deg;  ///< in the file; here they are in rad
   std::vector<std::string> sliders;   ///< joints whose values are in m
+  std::vector<std::string> lights;    ///< names among those of joints that are lights: 0 off to 1
   Easing ease = Easing::linear;
   bool loop = false;       ///< the last key is followed by the first without a pause
   double frame_s = 0.008;  ///< time between two set points
@@ -69,6 +78,7 @@ struct JointMotion {
   std::vector<MotionKey> keys;
   std::string frames_file;          ///< as written; empty: none
   std::vector<MotionTrack> frames;  ///< sampled tracks of `frames_file`
+  std::vector<MotionSound> sounds;
   std::vector<MotionChange> changes;
   std::optional<MotionOrigin> recorded;
 
@@ -93,6 +103,7 @@ struct JointMotion {
   const MotionPose* find_pose(const std::string& pose) const;
   /// Returns the value here of one unit in the file.
   double unit_of(const std::string& joint) const;
+  bool is_light(const std::string& joint) const;
 };
 
 /// Limits of the size of a motion.

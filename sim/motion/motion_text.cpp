@@ -48,6 +48,7 @@ class MotionWriter {
     if (!motion_.vehicle.empty()) line("vehicle: " + quoted(motion_.vehicle));
     line(motion_.angles == AngleUnit::deg ? "angles: deg" : "angles: rad");
     if (!motion_.sliders.empty()) line("sliders: " + list(motion_.sliders));
+    if (!motion_.lights.empty()) line("lights: " + list(motion_.lights));
     if (motion_.ease != Easing::linear) line("ease: " + word(motion_.ease));
     if (motion_.loop) line("loop: true");
     line("frame_s: " + number_text(motion_.frame_s));
@@ -98,6 +99,10 @@ class MotionWriter {
   }
 
   void write_rest() {
+    if (!motion_.sounds.empty()) line("sounds:");
+    for (const MotionSound& sound : motion_.sounds)
+      line("  - {at_s: " + number_text(sound.at_s) + ", sound: " + quoted(sound.sound) +
+           (sound.volume == 1 ? "" : ", volume: " + number_text(sound.volume)) + "}");
     if (!motion_.changes.empty()) line("changes:");
     for (const MotionChange& change : motion_.changes)
       line("  - {at_s: " + number_text(change.at_s) + ", do: " + to_flow_yaml(change.action) + "}");

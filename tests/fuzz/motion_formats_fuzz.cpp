@@ -6,11 +6,12 @@
 
 namespace {
 
-/// A leg with names in all lists, so that words of the corpus are found.
+/// A leg with a lamp, with names in all lists, so that words of the corpus are found.
 const motion::JointNames& names() {
-  static const motion::JointNames names("leg", {{"hip", "PRM:1", 0, false}, {"knee", "PRM:2", 0.5, false}},
-                                        {{"tekkotsu", "", false, {{"hip", "LFr:rotor"}, {"knee", "RFr:rotor"}}},
-                                         {"opencat", "", false, {{"hip", "8"}, {"knee", "9"}}}});
+  static const motion::JointNames names(
+      "leg", {{"hip", "PRM:1", 0, false}, {"knee", "PRM:2", 0.5, false}, {"lamp", "", 0, false, true}},
+      {{"tekkotsu", "", false, {{"hip", "LFr:rotor"}, {"knee", "RFr:rotor"}, {"lamp", "LED:lamp"}}},
+       {"opencat", "", false, {{"hip", "8"}, {"knee", "9"}}}});
   return names;
 }
 

@@ -10,6 +10,7 @@
 #include "shoal/joint_servo_command_t.hpp"
 #include "shoal/motion_command_t.hpp"
 #include "shoal/motion_state_t.hpp"
+#include "shoal/sound_t.hpp"
 #include "sim/vehicle/mounted_device.hpp"
 #include "tests/devices/joint/leg_fixture.hpp"
 #include "tests/devices/state_fixture.hpp"
@@ -211,6 +212,76 @@ TEST(MotionPlayer, SaysWhatIsWrongWithItsParameters) {
   EXPECT_THAT(error("group: group, motions: [{file: " + stage.folder.file("worse.yaml") + "}]"),
               HasSubstr("worse.yaml:3:15: key 1: 'at_s' must be a number"));
   EXPECT_THAT(error("group: group, motions: [{file: none.yaml}]"), HasSubstr("none.yaml"));
+}
+
+/// A player of a motion of 0.4 s, whose lamp goes from 0 to 1, and which barks at its start, in its middle and at its
+/// end.
+std::string lit_world(const std::string& more = "") {
+  return test::leg_world(
+             "        - {name: led, type: led, lights: [{name: lamp}]}\n"
+             "        - {name: speaker, type: speaker, rate_hz: every_step, sounds: [{name: bark, duration_s: 0.01}]}\n"
+             "        - {name: group, type: joint_group}\n"
+             "        - {name: player, type: motion_player, group: group, motions: [{motion: lit, lights: [lamp], "
+             "keys: "
+             "[{at_s: 0, joints: {hip: 0, lamp: 0}}, {at_s: 0.4, joints: {lamp: 1}}], sounds: [{at_s: 0, sound: bark}, "
+             "{at_s: 0.2, sound: bark, volume: 0.5}, {at_s: 0.4, sound: bark}]}]}\n") +
+         more;
+}
+
+TEST(MotionPlayer, PlaysLightsAndSounds) {
+  test::TestWorld test(lit_world());
+  test::Listener<shoal::sound_t> sounds(test, "dog.speaker");
+  auto play = command(0, "lit");
+  play.skip_approach = 1;
+  test.send("dog.player.cmd", play);
+  test.run_for(0.1);
+  const auto& led = dynamic_cast<const devices::Led&>(*test.world.find_vehicle("dog")->find_device("led")->sensor());
+  EXPECT_NEAR(led.intensities()[0], 0.25, 1e-9);
+  test.run_for(0.5);
+  EXPECT_EQ(led.intensities()[0], 1) << "it stays as the motion ended";
+  std::vector<double> volumes;
+  std::int64_t first = 0;
+  for (const shoal::sound_t& sound : sounds.take_all()) {
+    if (sound.sound.empty()) continue;
+    if (volumes.empty()) first = sound.utime;
+    // Half-way at 0.2 s, the end at 0.4 s, each within a step of 2 ms.
+    EXPECT_NEAR(static_cast<double>(sound.utime - first) * 1e-6, 0.2 * static_cast<double>(volumes.size()), 0.0021);
+    volumes.push_back(sound.volume);
+  }
+  EXPECT_THAT(volumes, testing::ElementsAre(1, 0.5, 1));
+}
+
+TEST(MotionPlayer, EachCycleOfALoopHasItsSounds) {
+  test::TestWorld test(lit_world());
+  test::Listener<shoal::sound_t> sounds(test, "dog.speaker");
+  auto play = command(0, "lit", 0, 0.3);
+  play.skip_approach = 1;
+  play.repeat = 4;
+  test.send("dog.player.cmd", play);
+  test.run_for(2);
+  int started = 0;
+  for (const shoal::sound_t& sound : sounds.take_all()) started += sound.sound.empty() ? 0 : 1;
+  EXPECT_EQ(started, 8);  // at 0 and 0.2 s of each cycle
+}
+
+TEST(MotionPlayer, NeedsTheLightsAndSoundsOfItsMotions) {
+  const auto error = [](const std::string& motion) {
+    return test::error_of_world(test::leg_world(
+        "        - {name: led, type: led, lights: [{name: lamp}]}\n        - {name: group, type: joint_group}\n"
+        "        - {name: player, type: motion_player, group: group, motions: [{motion: m, " +
+        motion + "}]}\n"));
+  };
+  EXPECT_THAT(error("lights: [lmap], keys: [{at_s: 0, joints: {hip: 0, lmap: 1}}]"),
+              HasSubstr("motion 'm' names light 'lmap', which the vehicle does not have; did you mean 'lamp'?"));
+  EXPECT_THAT(error("keys: [{at_s: 0, joints: {hip: 0}}], sounds: [{at_s: 0, sound: bark}]"),
+              HasSubstr("motion 'm' names sound 'bark', which the vehicle does not have"));
+}
+
+TEST(MotionPlayer, ContinuesWithLightsAndSoundsFromASnapshot) {
+  test::SavedRun run(lit_world(), [](test::TappedWorld& world, int step) {
+    if (step == 10) world.send("dog.player.cmd", command(0, "lit"));
+  });
+  run.expect_restored_worlds_go_on_alike({5, 60, 115}, 200);
 }
 
 TEST(MotionPlayer, ContinuesWithItsPlayheadFromASnapshot) {

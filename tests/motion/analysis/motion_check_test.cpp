@@ -55,6 +55,26 @@ TEST(MotionCheck, FindsEachRuleBrokenOnce) {
   EXPECT_THAT(rules_of(loop), testing::ElementsAre(MotionRule::loop_seam));
 }
 
+TEST(MotionCheck, LightsAndSoundsMustBeThoseOfTheVehicle) {
+  const test::TestWorld world(
+      test::leg_world("        - {name: led, type: led, lights: [{name: lamp}]}\n        - {name: speaker, type: "
+                      "speaker, sounds: [{name: bark}]}\n        - {name: group, type: joint_group}\n"));
+  const sim::VehicleConfig& vehicle = *world.loaded.config.vehicles.front().config;
+  sim::JointMotion lit = motion({{0, {{"hip", 0}, {"lamp", 0}, {"lmap", 1}}}, {1, {{"lamp", 1.5}}}});
+  lit.ease = sim::Easing::linear;
+  lit.lights = {"lamp", "lmap"};
+  lit.sounds = {{0.5, "bark", 1}, {0.5, "brak", 1}, {2, "bark", 1}};
+  std::vector<std::string> texts;
+  for (const tools::MotionFinding& finding : tools::check_motion(lit, vehicle)) texts.push_back(finding.text());
+  EXPECT_THAT(texts, testing::UnorderedElementsAre(
+                         "light 'lmap': no led of the vehicle has a light of this name",
+                         "light 'lamp' at 1.000 s: 1.5 is not within 0 to 1",
+                         "sound 'brak' at 0.500 s: no speaker of the vehicle has a sound of this name",
+                         "sound 'bark' at 2.000 s is never played: the motion ends at 1.000 s"));
+  const sim::JointMotion fixed = tools::mended(lit, vehicle);
+  for (const sim::MotionTrack& track : fixed.tracks()) EXPECT_LE(track.value_at(1), 1) << track.joint;
+}
+
 TEST(MotionCheck, ReportsTheWorstFrameAndItsKey) {
   const auto findings = motion::check_motion(
       motion({{0, {{"knee", 0}}}, {1, {{"knee", 1.2}}}, {2, {{"knee", 1.5}}}, {4, {{"knee", 0}}}}), leg());

@@ -51,6 +51,50 @@ std::string error_of(Action action) {
   }
 }
 
+/// As two_joints, with b as a light of the left side, and sounds at 0.5 s and 2 s.
+sim::JointMotion with_light() {
+  sim::JointMotion motion = two_joints();
+  motion.poses.clear();
+  motion.keys = {{0, "", {{"a", 0}, {"left_b", 0}}, {}, "", {}}, {3, "", {{"a", 1}, {"left_b", 1}}, {}, "", {}}};
+  motion.lights = {"left_b"};
+  motion.sounds = {{0.5, "bark", 1}, {2, "whine", 0.5}};
+  return motion;
+}
+
+std::vector<std::pair<double, std::string>> sounds_of(const sim::JointMotion& motion) {
+  std::vector<std::pair<double, std::string>> sounds;
+  for (const sim::MotionSound& sound : motion.sounds) sounds.emplace_back(sound.at_s, sound.sound);
+  return sounds;
+}
+
+TEST(MotionEdit, SoundsMoveWithTheirMotion) {
+  using testing::ElementsAre;
+  using testing::Pair;
+  const sim::JointMotion motion = with_light();
+  EXPECT_THAT(sounds_of(tools::trimmed(motion, 1, 3)), ElementsAre(Pair(1, "whine")));
+  EXPECT_THAT(sounds_of(tools::without(motion, 0.25, 1.25)), ElementsAre(Pair(1, "whine")));
+  EXPECT_THAT(sounds_of(tools::stretched(motion, 2)), ElementsAre(Pair(1, "bark"), Pair(4, "whine")));
+  EXPECT_THAT(sounds_of(tools::shifted(motion, 1, {})), ElementsAre(Pair(1.5, "bark"), Pair(3, "whine")));
+  EXPECT_THAT(sounds_of(tools::shifted(motion, 1, {"a"})), ElementsAre(Pair(0.5, "bark"), Pair(2, "whine")));
+  EXPECT_THAT(sounds_of(tools::appended(motion, motion, 1)),
+              ElementsAre(Pair(0.5, "bark"), Pair(2, "whine"), Pair(4.5, "bark"), Pair(6, "whine")));
+  EXPECT_THAT(sounds_of(tools::merged(motion, motion, true)), ElementsAre(Pair(0.5, "bark"), Pair(2, "whine")));
+}
+
+TEST(MotionEdit, LightsStayLightsOnTheOtherSideAndBehindAnotherMotion) {
+  const sim::JointMotion motion = with_light(), plain = two_joints();
+  const tools::MirrorRule rule{{{"left_", "right_"}}, {}};
+  const sim::JointMotion other = tools::mirrored(motion, rule);
+  EXPECT_TRUE(other.is_light("right_b"));
+  EXPECT_FALSE(other.is_light("left_b"));
+  EXPECT_EQ(value(other, "right_b", 1.5), 0.5);
+  EXPECT_TRUE(tools::appended(plain, motion, 1).is_light("left_b"));
+  EXPECT_TRUE(tools::merged(plain, motion, true).is_light("left_b"));
+  const sim::JointMotion cycle = tools::with_mirrored_half(motion, rule);
+  EXPECT_TRUE(cycle.is_light("left_b") && cycle.is_light("right_b"));
+  EXPECT_NEAR(value(cycle, "right_b", 4.5), 0.5, 1e-9);
+}
+
 TEST(MotionEdit, TrimKeepsThePartAsItWas) {
   for (const Easing ease : {Easing::linear, Easing::cosine, Easing::smooth, Easing::spline}) {
     const sim::JointMotion motion = two_joints(ease);

@@ -43,6 +43,37 @@ TEST(MotFormat, FindsOutputsAsTekkotsu) {
   EXPECT_THAT(file.losses, ElementsAre("outputs that vehicle 'leg' does not have are left out: NECK:roll, LED:face"));
 }
 
+TEST(MotFormat, KeepsTheLightsOfTheVehicle) {
+  const tools::JointNames names{
+      "leg",
+      {{"knee", "", 0, false}, {"face_a", "", 0, false, true}},
+      {{"tekkotsu", "", false, {{"knee", "LFr:knee"}, {"face_a", "LED:faceA"}, {"face_b", "LED:faceB"}}}}};
+  const std::string bytes =
+      "#MSq\nradians\nsetTime\t500\nLFr:knee\t1.000000\nLED:faceA\t0.250000\n"
+      "advanceTime\t100\nLFr:knee\t1.000000\nLED:faceA\t1.000000\n#END\n";
+  const test::Read file = test::read("mot", bytes, names);
+  EXPECT_THAT(file.motion.lights, ElementsAre("face_a"));
+  EXPECT_DOUBLE_EQ(test::value(file.motion, "face_a", 0.05), 0.625);
+  EXPECT_THAT(file.losses, IsEmpty());
+  const test::Written again = test::written("mot", file.motion, names);
+  EXPECT_EQ(again.bytes, bytes);
+  EXPECT_THAT(again.losses, IsEmpty());
+  // A light that the list names, but the vehicle does not have.
+  EXPECT_THAT(test::read("mot", "#MSq\nsetTime 9\nLFr:knee 1\nLED:faceB 1\n#END\n", names).losses,
+              ElementsAre("outputs that vehicle 'leg' does not have are left out: LED:faceB"));
+}
+
+TEST(MotFormat, LightsAndSoundsAreLossesOfFormatsWithoutThem) {
+  sim::JointMotion motion = test::motion({{0, {{"lf_swing", 0.25}, {"face_a", 1}}}, {1, {{"face_a", 0}}}});
+  motion.lights = {"face_a"};
+  motion.sounds = {{0.5, "bark", 1}};
+  const test::Written file = test::written("webots", motion);
+  EXPECT_THAT(file.losses, ElementsAre("intensities of 1 light are not kept", "1 sound is not kept"));
+  EXPECT_THAT(file.bytes, testing::Not(HasSubstr("face_a")));
+  motion.keys = {motion.keys[1]};
+  EXPECT_EQ(test::error_of([&] { test::written("webots", motion); }), "motion 'wave': needs a joint");
+}
+
 TEST(MotFormat, LeavesOutKeysAtZeroAndKeysWithoutWeight) {
   const test::Read file = test::read(
       "mot",

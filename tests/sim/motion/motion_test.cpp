@@ -67,6 +67,37 @@ TEST(JointMotion, ValuesOfSlidersAreNotAngles) {
   EXPECT_NEAR(motion.keys[0].joints[1].second, 90 * deg, 1e-15);
 }
 
+TEST(JointMotion, ValuesOfLightsAreIntensities) {
+  const char* const text = R"(shoal: 1
+motion: m
+lights: [face]
+keys:
+  - {at_s: 0, joints: {face: 0, hip: 90}}
+  - {at_s: 1, joints: {face: 1}}
+sounds:
+  - {at_s: 0.25, sound: bark}
+  - {at_s: 1, sound: whine, volume: 0.5}
+)";
+  const sim::JointMotion motion = MotionFile(text).load();
+  EXPECT_EQ(motion.tracks()[0].value_at(0.5), 0.5);
+  ASSERT_EQ(motion.sounds.size(), 2u);
+  EXPECT_EQ(motion.sounds[0].volume, 1);
+  EXPECT_EQ(motion.sounds[1].sound, "whine");
+  const sim::JointMotion again = MotionFile(sim::motion_text(motion)).load();
+  EXPECT_EQ(sim::motion_text(again), sim::motion_text(motion));
+  EXPECT_EQ(again.lights, motion.lights);
+  EXPECT_EQ(again.sounds[1].volume, 0.5);
+}
+
+TEST(JointMotion, SaysWhatIsWrongWithASound) {
+  const auto error = [](const std::string& sound) {
+    return MotionFile("shoal: 1\nmotion: m\nkeys: [{at_s: 0, joints: {hip: 1}}]\nsounds: [" + sound + "]\n").error();
+  };
+  EXPECT_THAT(error("{at_s: 0}"), HasSubstr("FILE:4:11: sound 1: missing key 'sound'"));
+  EXPECT_THAT(error("{at_s: -1, sound: bark}"), HasSubstr("'at_s' must be >= 0"));
+  EXPECT_THAT(error("{at_s: 0, sound: bark, volume: 2}"), HasSubstr("'volume' must be >= 1e-06 and <= 1, got 2"));
+}
+
 TEST(JointMotion, ItsTextReadsToTheSameMotion) {
   const sim::JointMotion motion = MotionFile(wave).load();
   const std::string text = sim::motion_text(motion);

@@ -10,6 +10,7 @@
 #include "devices/motion/servo_bank.hpp"
 #include "experiment/world_files/world_by_name.hpp"
 #include "motion/analysis/motion_file.hpp"
+#include "devices/signals/led.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tools/command_line/name_list.hpp"
@@ -50,10 +51,26 @@ std::string known_joint(const std::string& joint, const EditArguments& arguments
     if (is_it) return has(servo.device) ? servo.device : has(alias) ? alias : joint;
     if (!has(servo.device)) known.push_back(servo.device);
   }
+  for (const std::string& light : devices::lights_of(vehicle)) {
+    if (joint == light) return joint;
+    if (!has(light)) known.push_back(light);
+  }
   std::sort(known.begin(), known.end());
   throw command_line::UsageError("joint '" + sim::shortened(sim::printable(joint)) + "' is not a servo of vehicle '" +
                                  vehicle.vehicle + "'" + sim::did_you_mean(joint, known) +
                                  "; known: " + sim::list_text(known));
+}
+
+/// Returns the motion with those lights of its vehicle that the arguments set.
+sim::JointMotion with_lights(const EditArguments& arguments, const sim::JointMotion& motion) {
+  const std::string file = arguments.vehicle.empty() ? vehicle_file_of(motion.vehicle, arguments.file)
+                                                     : file_by_name({ShippedKind::vehicle}, arguments.vehicle);
+  sim::JointMotion lit = motion;
+  if (file.empty()) return lit;
+  for (const std::string& light : devices::lights_of(sim::load_vehicle(file)))
+    for (const std::string& text : arguments.values)
+      if (text.starts_with(light + "=") && !lit.is_light(light)) lit.lights.push_back(light);
+  return lit;
 }
 
 /// Parses `joint=value`, in the unit of the motion.
@@ -236,11 +253,14 @@ void add_values(EditCommands& commands) {
   simplify.command.add_option("--tolerance", simplify.arguments.by, "greatest change of a value, deg; usual 0.25")
       ->type_name("DEG")
       ->check(number_from(0, 360));
-  const auto set = commands.add(
-      "set", "Set values of joints", "wave.yaml --at 0.5 lf_knee=40 rf_knee=40",
-      [](const auto& a, const auto& motion) { return motion::with_values(motion, a.at_s, values_of(a, motion)); });
+  const auto set = commands.add("set", "Set values of joints", "wave.yaml --at 0.5 lf_knee=40 rf_knee=40",
+                                [](const auto& a, const auto& motion) {
+                                  const sim::JointMotion lit = with_lights(a, motion);
+                                  return motion::with_values(lit, a.at_s, values_of(a, lit));
+                                });
   set.command.add_option("--at", set.arguments.at_s, "time, s")->type_name("S")->check(time_s)->required();
-  set.command.add_option("VALUES", set.arguments.values, "JOINT=VALUE, in the unit of the file")->required();
+  set.command.add_option("VALUES", set.arguments.values, "JOINT=VALUE, in the unit of the file; a light from 0 to 1")
+      ->required();
   set.command.add_option("--vehicle", set.arguments.vehicle, "vehicle file with the joints; unset: that of the motion")
       ->type_name("FILE");
   const auto pose =

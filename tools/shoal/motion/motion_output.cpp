@@ -3,6 +3,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "experiment/files/file_replacement.hpp"
@@ -67,9 +68,14 @@ std::string content_text(const sim::JointMotion& motion) {
   const auto counted = [](std::size_t count, const char* word) {
     return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
   };
-  std::string text = fmt::format("{:.3f} s, {}", motion.end_s(), counted(motion.tracks().size(), "joint"));
+  const std::vector<sim::MotionTrack> tracks = motion.tracks();
+  const auto lights = static_cast<std::size_t>(
+      std::count_if(tracks.begin(), tracks.end(), [&](const auto& track) { return motion.is_light(track.joint); }));
+  std::string text = fmt::format("{:.3f} s, {}", motion.end_s(), counted(tracks.size() - lights, "joint"));
+  if (lights > 0) text += ", " + counted(lights, "light");
   if (!motion.keys.empty()) text += ", " + counted(motion.keys.size(), "key");
   if (!motion.frames.empty()) text += ", " + counted(motion.frames.front().keys.size(), "frame");
+  if (!motion.sounds.empty()) text += ", " + counted(motion.sounds.size(), "sound");
   if (!motion.changes.empty()) text += ", " + counted(motion.changes.size(), "change");
   return text;
 }

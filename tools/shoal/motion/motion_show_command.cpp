@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <iostream>
 #include <memory>
 #include <numbers>
@@ -26,10 +27,14 @@ void show(const ShowArguments& arguments) {
   const auto counted = [](std::size_t count, const char* word) {
     return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
   };
+  const auto lights = static_cast<std::size_t>(
+      std::count_if(tracks.begin(), tracks.end(), [&](const auto& track) { return motion.is_light(track.joint); }));
+  const std::string joints =
+      counted(tracks.size() - lights, "joint") + (lights > 0 ? ", " + counted(lights, "light") : "");
   std::cout << fmt::format("motion '{}'{}: {:.3f} s, {}, {}, {}, frames of {} ms{}\n", sim::printable(motion.name),
                            motion.vehicle.empty() ? "" : " of " + sim::printable(motion.vehicle), motion.end_s(),
-                           counted(tracks.size(), "joint"), counted(motion.keys.size(), "key"),
-                           counted(motion.poses.size(), "pose"), motion.frame_s * 1000, motion.loop ? ", a loop" : "");
+                           joints, counted(motion.keys.size(), "key"), counted(motion.poses.size(), "pose"),
+                           motion.frame_s * 1000, motion.loop ? ", a loop" : "");
   std::cout << fmt::format("  {:<24} {:>6} {:>10} {:>10} {:>12}\n", "joint", "keys", "least", "greatest", "fastest");
   for (const sim::MotionTrack& track : tracks) {
     const auto frames = sim::sampled({track}, motion.end_s(), motion.frame_s).front().keys;
@@ -40,11 +45,15 @@ void show(const ShowArguments& arguments) {
       if (i > 0) fastest = std::max(fastest, std::abs(frames[i].value - frames[i - 1].value) / motion.frame_s);
     }
     const bool is_slider = motion.unit_of(track.joint) == 1 && motion.angles == sim::AngleUnit::deg;
-    const double unit = is_slider ? 1 : std::numbers::pi / 180;
+    const double unit = is_slider || motion.is_light(track.joint) ? 1 : std::numbers::pi / 180;
     std::cout << fmt::format("  {:<24} {:>6} {:>10.2f} {:>10.2f} {:>10.2f}/s\n", sim::printable(track.joint),
                              track.keys.size(), lowest / unit, greatest / unit, fastest / unit);
   }
-  std::cout << (motion.sliders.empty() ? "  values in deg\n" : "  values in deg, of sliders in m\n");
+  for (const sim::MotionSound& sound : motion.sounds)
+    std::cout << fmt::format("  sound {:<18} at {:.3f} s, volume {:.2f}\n", sim::printable(sound.sound), sound.at_s,
+                             sound.volume);
+  std::cout << (motion.sliders.empty() ? "  values in deg" : "  values in deg, of sliders in m")
+            << (motion.lights.empty() ? "\n" : ", of lights from 0 to 1\n");
 }
 
 }  // namespace

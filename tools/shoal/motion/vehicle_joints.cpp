@@ -6,6 +6,7 @@
 
 #include "devices/motion/servo_bank.hpp"
 #include "experiment/world_files/world_by_name.hpp"
+#include "devices/signals/led.hpp"
 #include "sim/config/shipped_files.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 
@@ -37,6 +38,7 @@ motion::JointNames joint_names_of(const std::string& vehicle_file, const std::st
                       found != nullptr && !sim::joint_info(found->type).turns});
   }
   if (joints.empty()) throw sim::ConfigError({vehicle_file + ": the vehicle has no joint_servo"});
+  for (const std::string& light : devices::lights_of(vehicle)) joints.push_back({light, "", 0, false, true});
   const std::string file = names_file.empty() ? existing_names_file(vehicle_file, vehicle.vehicle) : names_file;
   std::vector<motion::JointNameList> lists;
   if (!file.empty()) lists = motion::load_joint_names(file).lists;
