@@ -70,6 +70,36 @@ class Commands(unittest.TestCase):
         self.motion("import", "sway.mtn", "--vehicle", "ers7", "--output", "all.yaml", "--strict")
         self.motion("check", "all.yaml")
 
+    def test_lights_go_to_tekkotsu_and_back_and_are_shown_checked_mirrored_and_played(self):
+        self.write("glow.yaml", """shoal: 1
+motion: glow
+vehicle: ers7
+lights: [face_a, back_rear_color]
+keys:
+  - {at_s: 0, joints: {head_nod: 0, face_a: 0, back_rear_color: 0.5}}
+  - {at_s: 1, joints: {head_nod: 20, face_a: 1}}
+sounds: [{at_s: 0.5, sound: bark}]
+""")
+        ran = self.motion("export", "glow.yaml", "--output", "glow.mot")
+        self.assertIn("glow.yaml: 1 sound is not kept", ran.stderr)
+        self.assertIn("LED:faceA\t1.000000", self.text("glow.mot"))
+        self.motion("import", "glow.mot", "--vehicle", "ers7", "--output", "again.yaml", "--strict")
+        again = self.text("again.yaml")
+        self.assertIn("lights: [face_a, back_rear_color]", again)
+        self.assertIn("at_s: 1, joints: {head_nod: 0.349066, face_a: 1", again)
+        ran = self.motion("export", "glow.yaml", "--output", "glow.mtn")
+        self.assertIn("glow.yaml: intensities of 2 lights are not kept", ran.stderr)
+        self.assertIn("1.000 s, 1 joint, 2 lights, 2 keys", self.motion("show", "glow.yaml").stdout)
+        self.motion("check", "glow.yaml")
+        self.motion("edit", "mirror", "glow.yaml", "--output", "other.yaml")
+        self.assertIn("lights: [face_b, back_rear_color]", self.text("other.yaml"))
+        self.motion("edit", "set", "glow.yaml", "--at", "0.5", "wireless=1")
+        self.assertIn("lights: [face_a, back_rear_color, wireless]", self.text("glow.yaml"))
+        self.motion("play", "glow.yaml", "--world", "ers7_studio")
+        self.write("dark.yaml", self.text("glow.yaml").replace("sound: bark", "sound: brak"))
+        ran = self.motion("check", "dark.yaml", code=1)
+        self.assertIn("sound 'brak' at 0.500 s: no speaker of the vehicle has a sound of this name", ran.stdout)
+
     def test_existing_files_are_kept_without_overwrite(self):
         self.write("sway.csv", "mine")
         ran = self.motion("export", "sway.yaml", "--output", "sway.csv", code=2)
