@@ -198,8 +198,20 @@ std::optional<sim::FieldOfView> Camera::field_of_view() const {
   return view;
 }
 
+int Camera::rays_per_side() const {
+  return takes_light(params_.image) ? params_.antialias : 1;  // depths and labels must not be averaged
+}
+
+void Camera::zoom(double fov_rad) {
+  zoomed_fov_rad_ = fov_rad;
+  if (params_.optics.fov_rad == fov_rad) return;
+  params_.optics.fov_rad = fov_rad;
+  lens_moved_ = true;
+}
+
 void Camera::change(const Params& params) {
   params_ = params;
+  if (zoomed_fov_rad_ > 0) params_.optics.fov_rad = zoomed_fov_rad_;
   SharedByCameras& shared = shared_.of(shared_by_cameras);
   sim::RenderOptions options;
   options.kind = render_kind(params.image);
@@ -208,10 +220,9 @@ void Camera::change(const Params& params) {
   options.range_max_m = params.range_max_m;
   options.depth_along_ray = params.depth_along == DepthAlong::ray;
   options.light = world_.config().light;
-  // Depths and labels must not be averaged.
-  const int per_side = takes_light(params.image) ? params.antialias : 1;
-  renderer_ =
-      std::make_unique<sim::Renderer>(physics_, shared.rays_of(params.optics, per_side), options, shared.textures);
+  renderer_ = std::make_unique<sim::Renderer>(physics_, shared.rays_of(params_.optics, rays_per_side()), options,
+                                              shared.textures);
+  lens_moved_ = false;
   renderer_->clear(in_progress_);
   next_exposure_ = 0;
   next_sample_ = swept_at_;  // unknown until the next sweep
@@ -223,6 +234,9 @@ int Camera::exposures() const {
 }
 
 void Camera::expose(int exposure, const sim::Pose& X_WS) {
+  // The rays of a lens that moves are its own, and are made only when they are needed.
+  if (lens_moved_) renderer_->set_rays(sim::make_pixel_rays(sim::Optics(params_.optics), rays_per_side()));
+  lens_moved_ = false;
   if (params_.readout_s > 0)
     renderer_->render_rows(X_WS, exposure, exposure + 1, 1, in_progress_);
   else

@@ -75,6 +75,9 @@ class Camera final : public sim::Sensor {
   std::int64_t rays() const override;
   void visit_state(sim::StateArchive& archive) override;
 
+  /// Sets the horizontal field of view, rad, from the next exposure on, in place of that of the parameters.
+  void zoom(double fov_rad);
+
   const Params& params() const { return params_; }
   /// Returns the distance to the left camera of its stereo pair, m; 0: it is not the right one of a pair.
   double baseline_m() const { return baseline_m_; }
@@ -113,7 +116,12 @@ class Camera final : public sim::Sensor {
   const sim::DeviceConfig& config_;
   sim::Time step_;
   int own_group_;
+  /// Returns the rays along each side of a pixel.
+  int rays_per_side() const;
+
   Params params_;
+  double zoomed_fov_rad_ = 0;  // 0: that of the parameters
+  bool lens_moved_ = false;    // the rays are those of another field of view
   double baseline_m_ = 0;
   std::unique_ptr<sim::Renderer> renderer_;
   sim::NoiseOf<&Params::noise> noise_;

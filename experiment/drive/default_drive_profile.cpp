@@ -38,6 +38,7 @@ twist: {forward_mps: 1, turn_radps: 1, steering_deg: 28}
 tilt: {tilt_deg: 4, turn_radps: 1}
 helm: {speed_mps: 1.5, heading_lead_deg: 45, depth_lead_m: 2}
 thrust: {thrust: 1, rudder: 1, elevator: 1}
+camera: {pan_degps: 60, tilt_degps: 40, zoom_degps: 15}
 joints: {velocity: 0.5}
 # Actuators without a drive.  Gains in the unit of each device: command at full deflection.
 crafts:

@@ -16,6 +16,7 @@
 #include "shoal/joint_servo_command_t.hpp"
 #include "shoal/joint_settings_t.hpp"
 #include "shoal/message_codec.hpp"
+#include "shoal/pan_tilt_zoom_command_t.hpp"
 #include "shoal/thrust_rudder_command_t.hpp"
 #include "shoal/thrust_rudder_elevator_command_t.hpp"
 #include "shoal/twist_command_t.hpp"
@@ -102,7 +103,7 @@ DrivenVehicle driven_vehicle(const shoal::sim_vehicle_t& message) {
 std::vector<DriveKind> drive_kinds(const DriveProfile& profile, const DrivenVehicle& vehicle) {
   std::vector<DriveKind> kinds;
   for (const DriveKind kind :
-       {DriveKind::twist, DriveKind::tilt, DriveKind::helm, DriveKind::thrust, DriveKind::joints})
+       {DriveKind::twist, DriveKind::tilt, DriveKind::helm, DriveKind::thrust, DriveKind::camera, DriveKind::joints})
     if (DriveMapping(profile).find(kind, vehicle)) kinds.push_back(kind);
   return kinds;
 }
@@ -132,6 +133,9 @@ bool DriveMapping::find(DriveKind kind, const DrivenVehicle& vehicle) {
       break;
     case DriveKind::thrust:
       find_thrust(vehicle);
+      break;
+    case DriveKind::camera:
+      find_cameras(vehicle);
       break;
     case DriveKind::joints:
       find_joints(vehicle);
@@ -208,6 +212,12 @@ bool DriveMapping::add_craft(const DriveProfile::Craft& craft, const DrivenVehic
   return !mix_.empty();
 }
 
+void DriveMapping::find_cameras(const DrivenVehicle& vehicle) {
+  axes_ = {"forward", "turn", "dive"};
+  for (const DrivenDevice& device : vehicle.devices)
+    if (takes(device, "pan_tilt_zoom_command_t")) targets_.push_back({Form::pan_tilt_zoom, device.channel});
+}
+
 void DriveMapping::find_joints(const DrivenVehicle& vehicle) {
   for (const DrivenDevice& device : vehicle.devices) {
     if (takes(device, "joint_servo_command_t"))
@@ -266,6 +276,14 @@ sim::Bytes DriveMapping::payload(const Target& target, const DriveValues& values
     }
     case Form::thrust_rudder:
       return stamped(thrust_rudder<shoal::thrust_rudder_command_t>(profile_.thrust, values), utime);
+    case Form::pan_tilt_zoom: {
+      shoal::pan_tilt_zoom_command_t command{};
+      command.pan_rad = command.tilt_rad = command.fov_rad = nothing;
+      command.pan_radps = turn * profile_.camera.pan_radps;
+      command.tilt_radps = forward * profile_.camera.tilt_radps;
+      command.fov_radps = -value_of(values, "dive") * profile_.camera.zoom_radps;
+      return stamped(command, utime);
+    }
     case Form::joint_servo: {
       shoal::joint_servo_command_t command{};
       command.mode = 1;

@@ -68,6 +68,7 @@ class DriveMapping {
     helm,
     thrust_rudder_elevator,
     thrust_rudder,
+    pan_tilt_zoom,
     joint_servo,
     joint,
     joint_settings
@@ -91,6 +92,7 @@ class DriveMapping {
   void find_program(bool tilts, const DrivenVehicle& vehicle);
   void find_helm(const DrivenVehicle& vehicle);
   void find_thrust(const DrivenVehicle& vehicle);
+  void find_cameras(const DrivenVehicle& vehicle);
   void find_joints(const DrivenVehicle& vehicle);
   bool add_craft(const DriveProfile::Craft& craft, const DrivenVehicle& vehicle);
   sim::Bytes payload(const Target& target, const DriveValues& values, std::int64_t utime,

@@ -98,6 +98,13 @@ void DriveProfile::Thrust::read(sim::ParamReader& in) {
   in.read("elevator", elevator, sim::between(0, 1), "elevator at full deflection");
 }
 
+void DriveProfile::Camera::read(sim::ParamReader& in) {
+  in.read_deg("pan_degps", pan_radps, sim::between(0, 3600), "speed of the pan at full deflection of turn");
+  in.read_deg("tilt_degps", tilt_radps, sim::between(0, 3600), "speed of the tilt at full deflection of forward");
+  in.read_deg("zoom_degps", zoom_radps, sim::between(0, 3600),
+              "by which the field of view becomes smaller at full deflection of dive");
+}
+
 void DriveProfile::Joints::read(sim::ParamReader& in) {
   in.read("velocity", velocity, sim::between(0, 1000), "velocity of a joint at full deflection, rad/s or m/s");
 }
@@ -141,6 +148,7 @@ void DriveProfile::read(sim::ParamReader& in) {
   in.read("tilt", tilt, "limits of kind tilt");
   in.read("helm", helm, "limits of kind helm");
   in.read("thrust", thrust, "limits of kind thrust, of a drive that takes thrust and rudder");
+  in.read("camera", camera, "limits of kind camera");
   in.read("joints", joints, "limits of kind joints");
   in.read_list("crafts", crafts, "craft", "thrusters and fins of crafts for kind thrust; the first that fits is used");
   in.read_list("programs", programs, "program", "programs that drive a vehicle by twist; the first that fits is used");

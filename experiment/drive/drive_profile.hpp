@@ -19,14 +19,13 @@ enum class DriveKind {
   tilt,    ///< tilt and turn rate of a vehicle that balances
   helm,    ///< speed, heading and depth of an autopilot
   thrust,  ///< thrust, rudder and elevator, or single thrusters and fins
+  camera,  ///< pan, tilt and zoom of a camera
   joints   ///< velocities of joints
 };
 
-inline constexpr sim::ChoiceWords<DriveKind> drive_kind_words{{"twist", DriveKind::twist},
-                                                              {"tilt", DriveKind::tilt},
-                                                              {"helm", DriveKind::helm},
-                                                              {"thrust", DriveKind::thrust},
-                                                              {"joints", DriveKind::joints}};
+inline constexpr sim::ChoiceWords<DriveKind> drive_kind_words{
+    {"twist", DriveKind::twist},   {"tilt", DriveKind::tilt},     {"helm", DriveKind::helm},
+    {"thrust", DriveKind::thrust}, {"camera", DriveKind::camera}, {"joints", DriveKind::joints}};
 
 /// Axis of a driver's controls, -1 to 1.  Positive: ahead, to the left (counter-clockwise), down, sideways to the left.
 enum class DriveAxis { forward, turn, dive, side };
@@ -84,6 +83,11 @@ struct DriveProfile {
     double thrust = 1, rudder = 1, elevator = 1;
     void read(sim::ParamReader& in);
   };
+  struct Camera {
+    double pan_radps = sim::degrees_to_radians(60), tilt_radps = sim::degrees_to_radians(40);
+    double zoom_radps = sim::degrees_to_radians(15);
+    void read(sim::ParamReader& in);
+  };
   struct Joints {
     double velocity = 0.5;
     void read(sim::ParamReader& in);
@@ -119,6 +123,7 @@ struct DriveProfile {
   Tilt tilt;
   Helm helm;
   Thrust thrust;
+  Camera camera;
   Joints joints;
   std::vector<Craft> crafts;
   std::vector<Program> programs;

@@ -40,6 +40,7 @@ bool nan_means_as_before(const MessageSchema& schema, const Member& member) {
       {"shoal.waypoints_command_t", {"depth_m", "speed_mps"}},
       {"shoal.motion_command_t", {"from_s", "to_s", "rate"}},
       {"shoal.joint_frames_t", {"position"}},
+      {"shoal.pan_tilt_zoom_command_t", {"pan_rad", "tilt_rad", "fov_rad", "pan_radps", "tilt_radps", "fov_radps"}},
   };
   return std::any_of(table.begin(), table.end(), [&](const AsBefore& row) {
     return schema.name == row.type &&

@@ -48,9 +48,9 @@ std::string WorldChannels::meant(const std::string& channel, bool received_only)
 }
 
 bool may_have_nan(const std::string& type) {
-  constexpr std::array<std::string_view, 6> types{"shoal.helm_command_t",    "shoal.joint_frames_t",
-                                                  "shoal.joint_settings_t",  "shoal.motion_command_t",
-                                                  "shoal.station_command_t", "shoal.waypoints_command_t"};
+  constexpr std::array<std::string_view, 7> types{
+      "shoal.helm_command_t",          "shoal.joint_frames_t",    "shoal.joint_settings_t",   "shoal.motion_command_t",
+      "shoal.pan_tilt_zoom_command_t", "shoal.station_command_t", "shoal.waypoints_command_t"};
   return std::find(types.begin(), types.end(), type) != types.end();
 }
 

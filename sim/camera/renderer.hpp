@@ -62,6 +62,8 @@ class Renderer {
   void render(const Pose& X_WS, Frame& frame);
 
   const PixelRays& rays() const { return *rays_; }
+  /// Replaces the rays by those of another lens, of the same number.
+  void set_rays(std::shared_ptr<const PixelRays> rays) { rays_ = std::move(rays); }
   const RenderOptions& options() const { return options_; }
 
   /// Returns the name of a label, such as `rover1/chassis/hull` or `rover1`.  Label 0 means no hit; part n and group n

@@ -86,6 +86,7 @@ vehicles:
   return text +
          "      devices:\n        - {name: radio, type: modem}\n        - {name: sound, type: acoustic_modem}\n" +
          "        - {name: arm, type: joint_servo, joint: arm}\n        - {name: group, type: joint_group}\n" +
+         "        - {name: eye, type: camera, width: 16, height: 12}\n" +
          "        - {name: push, type: thruster}\n        - {name: witness, type: imu}\n" +
          "        - {name: it, type: " + type.name + keys_of(type) + "}\n";
 }

@@ -14,6 +14,7 @@
 #include "shoal/inclination_t.hpp"
 #include "shoal/joint_servo_command_t.hpp"
 #include "shoal/message_codec.hpp"
+#include "shoal/pan_tilt_zoom_command_t.hpp"
 #include "shoal/thrust_rudder_elevator_command_t.hpp"
 #include "shoal/twist_command_t.hpp"
 #include "shoal/wrench_t.hpp"
@@ -143,6 +144,25 @@ TEST(DriveMapping, RunsJointsAtAVelocityAndHoldsTheOthers) {
   EXPECT_EQ(command(commands[0]).mode, 1);
   EXPECT_EQ(command(commands[0]).velocity, 0);
   EXPECT_DOUBLE_EQ(command(commands[1]).velocity, -profile().joints.velocity);
+}
+
+TEST(DriveMapping, PansTiltsAndZoomsACamera) {
+  const tools::DrivenVehicle driven = vehicle({{"pan", "joint_servo"}, {"ptz", "pan_tilt_zoom"}});
+  tools::DriveMapping mapping(profile(), driven, {});
+  EXPECT_EQ(mapping.kind(), DriveKind::camera);
+  EXPECT_THAT(mapping.axes(), ElementsAre("forward", "turn", "dive"));
+  const auto command = only<shoal::pan_tilt_zoom_command_t>(
+      mapping.commands({{"forward", -0.5}, {"turn", 1}, {"dive", 0.2}}, 7, {}), "v.ptz.cmd");
+  EXPECT_EQ(command.utime, 7);
+  EXPECT_TRUE(std::isnan(command.pan_rad) && std::isnan(command.tilt_rad) && std::isnan(command.fov_rad));
+  constexpr double deg = 0.017453292519943295;
+  EXPECT_DOUBLE_EQ(command.pan_radps, 60 * deg);
+  EXPECT_DOUBLE_EQ(command.tilt_radps, -20 * deg);
+  EXPECT_DOUBLE_EQ(command.fov_radps, -3 * deg);  // nearer
+  const auto safe = only<shoal::pan_tilt_zoom_command_t>(mapping.commands({}, 0, {}), "v.ptz.cmd");
+  EXPECT_EQ(safe.pan_radps, 0);
+  EXPECT_EQ(safe.tilt_radps, 0);
+  EXPECT_EQ(safe.fov_radps, 0);
 }
 
 TEST(DriveMapping, DrivesTheSegwayThroughTheProgramThatBalancesIt) {

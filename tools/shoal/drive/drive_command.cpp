@@ -322,7 +322,7 @@ static void add_drive_command(CLI::App& app, int& exit_code) {
       ->add_option("--kind", arguments->kind,
                    "what to command; without it the one that fits the devices of the vehicle")
       ->type_name("KIND")
-      ->check(one_of({"twist", "tilt", "helm", "thrust", "joints"}));
+      ->check(one_of({"twist", "tilt", "helm", "thrust", "camera", "joints"}));
   // Controls.
   command->add_option("--profile", arguments->profile, "file with keys, axes, limits and rates")->type_name("FILE");
   command->add_flag("--print-profile", arguments->print_profile, "print the profile of the program, to be changed");
