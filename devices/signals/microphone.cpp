@@ -20,7 +20,8 @@ double power(double level_dB) {
 }  // namespace
 
 void Microphone::Params::read(sim::ParamReader& in) {
-  in.read("ambient_dB", ambient_dB, sim::between(-20, 194), "level of the ambient noise; softer sounds are not received");
+  in.read("ambient_dB", ambient_dB, sim::between(-20, 194),
+          "level of the ambient noise; softer sounds are not received");
   in.read("level_noise", level_noise, "error of the level, dB");
   in.read("bearing_noise", bearing_noise, "error of the bearing, rad");
 }

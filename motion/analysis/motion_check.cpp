@@ -12,9 +12,9 @@
 
 #include "devices/motion/joint_group.hpp"
 #include "devices/motion/servo_bank.hpp"
-#include "motion/analysis/motion_edit.hpp"
 #include "devices/signals/led.hpp"
 #include "devices/signals/speaker.hpp"
+#include "motion/analysis/motion_edit.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/motion/motion_frames.hpp"
 

@@ -147,8 +147,8 @@ TEST(DriveMapping, RunsJointsAtAVelocityAndHoldsTheOthers) {
 }
 
 TEST(DriveMapping, PansTiltsAndZoomsACamera) {
-  const tools::DrivenVehicle driven = vehicle({{"pan", "joint_servo"}, {"ptz", "pan_tilt_zoom"}});
-  tools::DriveMapping mapping(profile(), driven, {});
+  const experiment::DrivenVehicle driven = vehicle({{"pan", "joint_servo"}, {"ptz", "pan_tilt_zoom"}});
+  experiment::DriveMapping mapping(profile(), driven, {});
   EXPECT_EQ(mapping.kind(), DriveKind::camera);
   EXPECT_THAT(mapping.axes(), ElementsAre("forward", "turn", "dive"));
   const auto command = only<shoal::pan_tilt_zoom_command_t>(

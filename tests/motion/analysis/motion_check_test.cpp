@@ -65,13 +65,13 @@ TEST(MotionCheck, LightsAndSoundsMustBeThoseOfTheVehicle) {
   lit.lights = {"lamp", "lmap"};
   lit.sounds = {{0.5, "bark", 1}, {0.5, "brak", 1}, {2, "bark", 1}};
   std::vector<std::string> texts;
-  for (const tools::MotionFinding& finding : tools::check_motion(lit, vehicle)) texts.push_back(finding.text());
+  for (const motion::MotionFinding& finding : motion::check_motion(lit, vehicle)) texts.push_back(finding.text());
   EXPECT_THAT(texts, testing::UnorderedElementsAre(
                          "light 'lmap': no led of the vehicle has a light of this name",
                          "light 'lamp' at 1.000 s: 1.5 is not within 0 to 1",
                          "sound 'brak' at 0.500 s: no speaker of the vehicle has a sound of this name",
                          "sound 'bark' at 2.000 s is never played: the motion ends at 1.000 s"));
-  const sim::JointMotion fixed = tools::mended(lit, vehicle);
+  const sim::JointMotion fixed = motion::mended(lit, vehicle);
   for (const sim::MotionTrack& track : fixed.tracks()) EXPECT_LE(track.value_at(1), 1) << track.joint;
 }
 

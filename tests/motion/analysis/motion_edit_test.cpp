@@ -71,26 +71,26 @@ TEST(MotionEdit, SoundsMoveWithTheirMotion) {
   using testing::ElementsAre;
   using testing::Pair;
   const sim::JointMotion motion = with_light();
-  EXPECT_THAT(sounds_of(tools::trimmed(motion, 1, 3)), ElementsAre(Pair(1, "whine")));
-  EXPECT_THAT(sounds_of(tools::without(motion, 0.25, 1.25)), ElementsAre(Pair(1, "whine")));
-  EXPECT_THAT(sounds_of(tools::stretched(motion, 2)), ElementsAre(Pair(1, "bark"), Pair(4, "whine")));
-  EXPECT_THAT(sounds_of(tools::shifted(motion, 1, {})), ElementsAre(Pair(1.5, "bark"), Pair(3, "whine")));
-  EXPECT_THAT(sounds_of(tools::shifted(motion, 1, {"a"})), ElementsAre(Pair(0.5, "bark"), Pair(2, "whine")));
-  EXPECT_THAT(sounds_of(tools::appended(motion, motion, 1)),
+  EXPECT_THAT(sounds_of(motion::trimmed(motion, 1, 3)), ElementsAre(Pair(1, "whine")));
+  EXPECT_THAT(sounds_of(motion::without(motion, 0.25, 1.25)), ElementsAre(Pair(1, "whine")));
+  EXPECT_THAT(sounds_of(motion::stretched(motion, 2)), ElementsAre(Pair(1, "bark"), Pair(4, "whine")));
+  EXPECT_THAT(sounds_of(motion::shifted(motion, 1, {})), ElementsAre(Pair(1.5, "bark"), Pair(3, "whine")));
+  EXPECT_THAT(sounds_of(motion::shifted(motion, 1, {"a"})), ElementsAre(Pair(0.5, "bark"), Pair(2, "whine")));
+  EXPECT_THAT(sounds_of(motion::appended(motion, motion, 1)),
               ElementsAre(Pair(0.5, "bark"), Pair(2, "whine"), Pair(4.5, "bark"), Pair(6, "whine")));
-  EXPECT_THAT(sounds_of(tools::merged(motion, motion, true)), ElementsAre(Pair(0.5, "bark"), Pair(2, "whine")));
+  EXPECT_THAT(sounds_of(motion::merged(motion, motion, true)), ElementsAre(Pair(0.5, "bark"), Pair(2, "whine")));
 }
 
 TEST(MotionEdit, LightsStayLightsOnTheOtherSideAndBehindAnotherMotion) {
   const sim::JointMotion motion = with_light(), plain = two_joints();
-  const tools::MirrorRule rule{{{"left_", "right_"}}, {}};
-  const sim::JointMotion other = tools::mirrored(motion, rule);
+  const motion::MirrorRule rule{{{"left_", "right_"}}, {}};
+  const sim::JointMotion other = motion::mirrored(motion, rule);
   EXPECT_TRUE(other.is_light("right_b"));
   EXPECT_FALSE(other.is_light("left_b"));
   EXPECT_EQ(value(other, "right_b", 1.5), 0.5);
-  EXPECT_TRUE(tools::appended(plain, motion, 1).is_light("left_b"));
-  EXPECT_TRUE(tools::merged(plain, motion, true).is_light("left_b"));
-  const sim::JointMotion cycle = tools::with_mirrored_half(motion, rule);
+  EXPECT_TRUE(motion::appended(plain, motion, 1).is_light("left_b"));
+  EXPECT_TRUE(motion::merged(plain, motion, true).is_light("left_b"));
+  const sim::JointMotion cycle = motion::with_mirrored_half(motion, rule);
   EXPECT_TRUE(cycle.is_light("left_b") && cycle.is_light("right_b"));
   EXPECT_NEAR(value(cycle, "right_b", 4.5), 0.5, 1e-9);
 }

@@ -44,7 +44,7 @@ TEST(MotFormat, FindsOutputsAsTekkotsu) {
 }
 
 TEST(MotFormat, KeepsTheLightsOfTheVehicle) {
-  const tools::JointNames names{
+  const motion::JointNames names{
       "leg",
       {{"knee", "", 0, false}, {"face_a", "", 0, false, true}},
       {{"tekkotsu", "", false, {{"knee", "LFr:knee"}, {"face_a", "LED:faceA"}, {"face_b", "LED:faceB"}}}}};

@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "devices/motion/servo_bank.hpp"
+#include "devices/signals/led.hpp"
 #include "experiment/world_files/world_by_name.hpp"
 #include "motion/analysis/motion_file.hpp"
-#include "devices/signals/led.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tools/command_line/name_list.hpp"

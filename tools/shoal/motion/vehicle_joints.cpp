@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "devices/motion/servo_bank.hpp"
-#include "experiment/world_files/world_by_name.hpp"
 #include "devices/signals/led.hpp"
+#include "experiment/world_files/world_by_name.hpp"
 #include "sim/config/shipped_files.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 
