@@ -95,7 +95,7 @@ std::vector<verification::AcousticPacket> packets_of(const AcousticsArguments& a
                                                      const devices::AcousticModem::Params* modem) {
   std::vector<verification::AcousticPacket> packets;
   for (const std::string& text : arguments.packets) {
-    const auto packet = parse_packet(text);
+    const auto packet = verification::parse_packet(text);
     if (!packet)
       throw CLI::ValidationError(
           "--packet", "must be modulation:bit/s:bytes such as fsk:80:32 (fsk, psk, dpsk), got '" + text + "'");
@@ -108,10 +108,10 @@ std::vector<verification::AcousticPacket> packets_of(const AcousticsArguments& a
     }
   if (!packets.empty()) return packets;
   if (modem != nullptr)
-    return {*parse_packet(fmt::format("{}:{}:{}", sim::to_string(modem->modulation), modem->bit_rate_bps,
-                                      std::int64_t{modem->frames} * modem->frame_bytes))};
+    return {*verification::parse_packet(fmt::format("{}:{}:{}", sim::to_string(modem->modulation), modem->bit_rate_bps,
+                                                    std::int64_t{modem->frames} * modem->frame_bytes))};
   for (const char* text : {"fsk:80:32", "psk:500:64", "psk:5300:256", "dpsk:1200:256"})
-    packets.push_back(*parse_packet(text));
+    packets.push_back(*verification::parse_packet(text));
   return packets;
 }
 

@@ -22,7 +22,7 @@ namespace tools {
 
 namespace {
 
-constexpr double motion::rad_per_deg = std::numbers::pi / 180;
+constexpr double rad_per_deg = std::numbers::pi / 180;
 
 struct EditArguments {
   std::string file, output, other, vehicle, name;
@@ -63,8 +63,9 @@ std::string known_joint(const std::string& joint, const EditArguments& arguments
 
 /// Returns the motion with those lights of its vehicle that the arguments set.
 sim::JointMotion with_lights(const EditArguments& arguments, const sim::JointMotion& motion) {
-  const std::string file = arguments.vehicle.empty() ? vehicle_file_of(motion.vehicle, arguments.file)
-                                                     : file_by_name({ShippedKind::vehicle}, arguments.vehicle);
+  const std::string file = arguments.vehicle.empty()
+                               ? vehicle_file_of(motion.vehicle, arguments.file)
+                               : experiment::file_by_name({experiment::ShippedKind::vehicle}, arguments.vehicle);
   sim::JointMotion lit = motion;
   if (file.empty()) return lit;
   for (const std::string& light : devices::lights_of(sim::load_vehicle(file)))
@@ -246,9 +247,9 @@ void add_values(EditCommands& commands) {
       ->type_name("S")
       ->check(time_s)
       ->required();
-  const auto simplify = commands.add(
-      "simplify", "Leave out keys", "recorded.yaml --tolerance 0.25",
-      [](const auto& a, const auto& motion) { return motion::simplified(motion, a.by * motion::rad_per_deg); });
+  const auto simplify =
+      commands.add("simplify", "Leave out keys", "recorded.yaml --tolerance 0.25",
+                   [](const auto& a, const auto& motion) { return motion::simplified(motion, a.by * rad_per_deg); });
   simplify.arguments.by = 0.25;
   simplify.command.add_option("--tolerance", simplify.arguments.by, "greatest change of a value, deg; usual 0.25")
       ->type_name("DEG")

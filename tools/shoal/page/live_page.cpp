@@ -78,7 +78,7 @@ int run_watched(const std::string& world_file, experiment::RunOptions& options, 
   return exit_code;
 }
 
-constexpr LivePage of_this_library{run_page, run_watched};
+constexpr LivePage of_this_library{viewer::run_page, run_watched};
 [[maybe_unused]] const bool is_set = (live_page = &of_this_library) != nullptr;
 
 }  // namespace
