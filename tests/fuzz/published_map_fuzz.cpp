@@ -4,10 +4,18 @@
 #include "experiment/score/map/published_map.hpp"
 #include "shoal/message_codec.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
+#include "viewer/estimates/vehicle_path.hpp"
 
-// An occupancy grid on the bus, which a metric and `shoal map` read.
+// An occupancy grid on the bus, which a metric and `shoal map` read, and a path, which page and film draw.
 
 SHOAL_FUZZ_TARGET(published_map) {
+  fuzz::allow<shoal::MessageError>([&] {
+    const auto path = viewer::read_path(input);
+    if (!path) return;
+    fuzz::require(path->points.size() <= viewer::VehiclePath::max_points, "a path has a limit");
+    for (const auto& point : path->points)
+      fuzz::require(std::isfinite(point.x_m) && std::isfinite(point.y_m), "its points are somewhere");
+  });
   fuzz::allow<shoal::MessageError>([&] {
     const experiment::PublishedMap published = experiment::decode_map(input);
     const experiment::MapFrame& frame = published.map.frame;

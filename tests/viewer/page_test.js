@@ -210,6 +210,43 @@ describe('estimates', () => {
   });
 });
 
+describe('paths', () => {
+  const check = (page, id, on) => page.evaluate((option, to) => {
+    document.getElementById(option).checked = to;
+    document.getElementById(option).dispatchEvent(new Event('input'));
+  }, id, on);
+
+  it('of programs are drawn through their points, at their depth or at the height of the vehicle', async () => {
+    await withPage(scenes.underwater(), async (page, server) => {
+      await show(page, server, 2);
+      server.send({
+        op: 'paths',
+        items: [
+          {channel: 'auv1.path', vehicle: 'auv1', time_us: 1e6, points: [[0, 0, 10], [30, 5, 12.5]], loop: true},
+          {channel: 'auv2.autopilot.cmd', vehicle: 'auv2', time_us: 2e6, points: [[1, 2, null], [3, 4, null]]},
+          {channel: 'nobody.path', vehicle: 'nobody', time_us: 2e6, points: 'none'},
+        ]
+      });
+      const {paths} = await until(page, (p) => p.paths.length === 2 && p.paths[1].points[0][2] < -13);
+      assert.deepEqual(paths.map((path) => path.channel), ['auv1.path', 'auv2.autopilot.cmd']);
+      const expected = [[[0, 0, -10], [30, 5, -12.5], [0, 0, -10]], [[1, 2, -13.95], [3, 4, -13.95]]];
+      paths.forEach(({points}, i) => {
+        assert.equal(points.length, expected[i].length);
+        points.forEach((point, j) => point.forEach((x, k) => near(x, expected[i][j][k], 1e-3, `${i} ${j} ${k}`)));
+      });
+      // Back in time only the older one is left; switched off there is none.
+      await show(page, server, 1.5);
+      await until(page, (p) => p.paths.length === 1);
+      await check(page, 'o-paths', false);
+      await until(page, (p) => p.paths.length === 0);
+      await check(page, 'o-paths', true);
+      await until(page, (p) => p.paths.length === 1);
+      server.send({op: 'paths', items: []});
+      await until(page, (p) => p.paths.length === 0);
+    });
+  });
+});
+
 describe('water', () => {
   it('has the waves of the run in its shader, within 1 cm at 100 points', async () => {
     await withPage(scenes.underwater(), async (page) => {

@@ -79,7 +79,7 @@ class Film {
         world_(source_->world()),
         until_s_(end(options, *source_)),
         painter_(world_, options.threads),
-        overlay_(world_, film_overlay(options), estimates()) {
+        overlay_(world_, film_overlay(options), estimates(), paths()) {
     start();
   }
 
@@ -128,6 +128,11 @@ class Film {
   LogEstimates estimates() const {
     if (!options_.overlays.ellipses || source_->log().empty()) return {};
     return {source_->log(), options_.from_s - 60, until_s_, 0.5 * step_s()};
+  }
+
+  LogPaths paths() const {
+    if (!options_.overlays.paths || source_->log().empty()) return {};
+    return {source_->log(), until_s_};
   }
 
   /// Runs to the first frame, and makes the cameras.

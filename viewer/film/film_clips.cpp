@@ -139,7 +139,7 @@ class Clips {
         world_(source_->world()),
         like_(film_view(film, world_)),
         painter_(world_, film.threads),
-        overlay_(world_, film_overlay(film), estimates()) {}
+        overlay_(world_, film_overlay(film), estimates(), paths()) {}
 
   void run(ClipOutcome& outcome) {
     // All clips have frames at multiples of the same time.
@@ -167,6 +167,11 @@ class Clips {
   LogEstimates estimates() const {
     if (!film_.overlays.ellipses) return {};
     return {film_.source, clips_.front().from_s - 60, clips_.back().to_s + 60, 0.5 * film_.speed / film_.format.fps};
+  }
+
+  LogPaths paths() const {
+    if (!film_.overlays.paths) return {};
+    return {film_.source, clips_.back().to_s + 60};
   }
 
   /// Runs to a time, with points for the trails.  Returns false at the end of the log.

@@ -20,6 +20,7 @@ constexpr std::size_t max_pings = 500;
 constexpr sim::Color vehicle_colors[] = {{86, 180, 233}, {230, 159, 0},   {0, 200, 140},   {240, 228, 66},
                                          {213, 94, 0},   {204, 121, 167}, {120, 140, 255}, {230, 230, 230}};
 constexpr sim::Color estimate_color{255, 90, 160};
+constexpr double path_height_m = 0.03;  ///< above the vehicle frame, which is on the ground on land
 constexpr sim::Color ping_color{255, 255, 160};
 constexpr sim::Color ray_color{255, 157, 60};  ///< as on the live page
 
@@ -36,13 +37,14 @@ OverlayChoice parse_overlays(const std::string& text) {
   while (std::getline(words, word, ',')) {
     if (word == "none") continue;
     const bool all = word == "all";
-    if (!all && word != "trails" && word != "ellipses" && word != "pings" && word != "rays" && word != "labels" &&
-        word != "clock")
+    if (!all && word != "trails" && word != "paths" && word != "ellipses" && word != "pings" && word != "rays" &&
+        word != "labels" && word != "clock")
       throw std::invalid_argument(
-          "must be trails, ellipses, pings, rays, labels and clock, separated by commas, all or none, "
+          "must be trails, paths, ellipses, pings, rays, labels and clock, separated by commas, all or none, "
           "got '" +
           text + "'");
     choice.trails |= all || word == "trails";
+    choice.paths |= all || word == "paths";
     choice.ellipses |= all || word == "ellipses";
     choice.pings |= all || word == "pings";
     choice.rays |= all || word == "rays";
@@ -52,10 +54,11 @@ OverlayChoice parse_overlays(const std::string& text) {
   return choice;
 }
 
-Overlay::Overlay(const sim::World& world, Settings settings, LogEstimates estimates)
+Overlay::Overlay(const sim::World& world, Settings settings, LogEstimates estimates, LogPaths paths)
     : world_(world),
       settings_(std::move(settings)),
       estimates_(std::move(estimates)),
+      paths_(std::move(paths)),
       scans_(world),
       edges_(std::make_unique<ShapeEdges>(world)) {}
 
@@ -106,6 +109,7 @@ void Overlay::draw(RenderedScene& rendered, const SceneView& view) const {
   if (settings_.choice.shapes != BodyShapes::drawn) edges_->draw(canvas, settings_.choice.shapes);
   if (settings_.choice.pings) draw_pings(canvas);
   if (settings_.choice.rays) draw_rays(canvas);
+  if (settings_.choice.paths) draw_paths(canvas);
   if (settings_.choice.trails) draw_trails(canvas);
   if (settings_.choice.ellipses) draw_estimates(canvas);
   if (settings_.choice.labels) draw_labels(canvas, view);
@@ -122,6 +126,29 @@ void Overlay::draw_trails(OverlayCanvas& canvas) const {
       pen.hidden_opacity = 0.35F;
       canvas.line(trail.points_W[i - 1].second, trail.points_W[i].second, pen);
     }
+  }
+}
+
+void Overlay::draw_paths(OverlayCanvas& canvas) const {
+  for (const auto& [channel, path] : paths_.at(sim::to_seconds(world_.now()))) {
+    const sim::Vehicle* const vehicle = world_.find_vehicle(path_vehicle(channel));
+    const double height_m = (vehicle == nullptr ? 0 : vehicle->X_WV().translation().z()) + path_height_m;
+    std::vector<sim::Vector3d> points_W;
+    for (const VehiclePath::Point& point : path->points) {
+      const double z_m = world_.medium().still_surface_m() - point.depth_m;  // not finite without water or depth
+      points_W.emplace_back(point.x_m, point.y_m, std::isfinite(z_m) ? z_m : height_m);
+    }
+    if (points_W.empty()) continue;
+    if (path->loop) points_W.push_back(points_W.front());
+    // Paler than the trail.
+    sim::Color color = vehicle == nullptr ? sim::Color{255, 255, 255} : color_of(vehicle->number());
+    for (std::uint8_t& level : color) level = static_cast<std::uint8_t>((level + 255) / 2);
+    Pen pen{color, 2, 0.9F}, dot = pen;
+    pen.hidden_opacity = 0.5F;
+    dot.width_px = 6;
+    dot.hidden_opacity = 0.5F;
+    canvas.polyline(points_W, pen);
+    for (const sim::Vector3d& p_W : points_W) canvas.dot(p_W, dot);
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "sim/world/world.hpp"
 #include "viewer/estimates/log_estimates.hpp"
+#include "viewer/estimates/log_paths.hpp"
 #include "viewer/film/laser_scans.hpp"
 #include "viewer/film/overlay_canvas.hpp"
 #include "viewer/film/shape_edges.hpp"
@@ -17,7 +18,8 @@ namespace viewer {
 
 /// Signs that are drawn over images.
 struct OverlayChoice {
-  bool trails = false;    ///< paths of the vehicles
+  bool trails = false;    ///< where the vehicles have been
+  bool paths = false;     ///< where they mean to go, by messages of a log
   bool ellipses = false;  ///< estimates of a log: position, its covariance (3 sigma) and its error
   bool pings = false;     ///< sound in the water as spheres that expand
   bool rays = false;      ///< rays of laser scanners, from the sensor to what they hit
@@ -25,7 +27,9 @@ struct OverlayChoice {
   bool clock = false;     ///< simulated time
   BodyShapes shapes = BodyShapes::drawn;
 
-  bool any() const { return trails || ellipses || pings || rays || labels || clock || shapes != BodyShapes::drawn; }
+  bool any() const {
+    return trails || paths || ellipses || pings || rays || labels || clock || shapes != BodyShapes::drawn;
+  }
 };
 
 /// Parses `trails,labels` and so on, `all` or `none`; bodies are drawn as they look.  Throws std::invalid_argument.
@@ -50,7 +54,7 @@ class Overlay {
   };
 
   /// `world` must outlive this.
-  Overlay(const sim::World& world, Settings settings, LogEstimates estimates);
+  Overlay(const sim::World& world, Settings settings, LogEstimates estimates, LogPaths paths = {});
 
   /// Notes where the vehicles are.  To be called at least once before each image; between images it makes trails
   /// smoother.
@@ -73,6 +77,7 @@ class Overlay {
 
   static void extend(Trail& trail, double now_s, const sim::Vector3d& p_W, double trail_s);
   void draw_trails(OverlayCanvas& canvas) const;
+  void draw_paths(OverlayCanvas& canvas) const;
   void draw_estimates(OverlayCanvas& canvas) const;
   void draw_pings(OverlayCanvas& canvas) const;
   void draw_rays(OverlayCanvas& canvas) const;
@@ -82,6 +87,7 @@ class Overlay {
   const sim::World& world_;
   Settings settings_;
   LogEstimates estimates_;
+  LogPaths paths_;
   std::map<std::string, Trail> trails_, estimate_trails_;
   std::deque<FilmPing> pings_;
   LaserScans scans_;

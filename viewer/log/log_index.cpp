@@ -8,6 +8,7 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_event_t.hpp"
 #include "shoal/sim_info_t.hpp"
+#include "shoal/waypoints_command_t.hpp"
 #include "shoal/wire_value.hpp"
 #include "viewer/log/message_times.hpp"
 
@@ -21,6 +22,11 @@ constexpr std::size_t fingerprint_bytes = 8, word_bytes = 8;
 std::optional<std::uint64_t> word_of(std::span<const std::byte> payload, std::size_t offset) {
   if (payload.size() < fingerprint_bytes + offset + word_bytes) return std::nullopt;
   return shoal::big_endian<std::uint64_t>(payload.data() + fingerprint_bytes + offset);
+}
+
+bool is_path_of(const bridges::LogEventView& event) {
+  return event.payload.size() >= fingerprint_bytes && !event.channel.starts_with("sim.") &&
+         shoal::fingerprint(event.payload) == shoal::fingerprint_of<shoal::waypoints_command_t>();
 }
 
 /// Returns the UTC of simulated time 0 by the first `sim.info`, which a logger that was started after the run has only
@@ -49,6 +55,13 @@ const LogIndex::Mark* LogIndex::last(const std::vector<Mark>& marks, std::int64_
 std::optional<LogIndex::Mark> LogIndex::scores_at(std::int64_t time_us) const {
   if (scores_.empty() || scores_.front().time_us > time_us) return std::nullopt;
   return *last(scores_, time_us);
+}
+
+std::vector<std::uint64_t> LogIndex::paths_at(std::int64_t time_us) const {
+  std::vector<std::uint64_t> offsets;
+  for (const auto& [channel, marks] : paths_)
+    if (marks.front().time_us <= time_us) offsets.push_back(last(marks, time_us)->offset);
+  return offsets;
 }
 
 void LogIndex::add(std::vector<Mark>& marks, const Mark& mark) {
@@ -80,10 +93,15 @@ LogIndex::LogIndex(const std::string& path, const std::function<void(double shar
       progress(static_cast<double>(event.offset) / static_cast<double>(reader.file_bytes()));
     const bool is_bodies = event.channel == "sim.bodies";
     if (!is_bodies) counts.take(event.channel, event.payload);
-    if (!event.channel.starts_with("sim.")) continue;
+    const bool is_path = is_path_of(event);
+    if (!is_path && !event.channel.starts_with("sim.")) continue;
     const auto stamp = stamp_of(event.payload);
     if (!stamp) continue;
     const Mark mark{*stamp - epoch_us_, event.offset};
+    if (is_path) {
+      add(paths_[std::string(event.channel)], mark);
+      continue;
+    }
     try {
       if (event.channel == "sim.info") {
         const auto info = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,6 +49,8 @@ class LogIndex {
   Mark bodies_at(std::int64_t time_us) const { return *last(bodies_, time_us); }
   Mark scene_at(std::int64_t time_us) const { return *last(scenes_, time_us); }
   std::optional<Mark> scores_at(std::int64_t time_us) const;
+  /// Returns the offsets of the last path (shoal.waypoints_command_t) of each channel at or before a time.
+  std::vector<std::uint64_t> paths_at(std::int64_t time_us) const;
   const std::vector<Mark>& bodies() const { return bodies_; }
   /// Returns the first hash of each step that has one, in the order of the steps.
   const std::vector<Hash>& hashes() const { return hashes_; }
@@ -67,6 +70,7 @@ class LogIndex {
   bool has_info_ = false;  // of the run, with its world
   std::string world_;
   std::vector<Mark> bodies_, scenes_, scores_;
+  std::map<std::string, std::vector<Mark>, std::less<>> paths_;  // by channel
   std::vector<Hash> hashes_;
   std::vector<std::uint64_t> assets_;
   std::vector<Occasion> occasions_;

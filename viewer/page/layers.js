@@ -7,6 +7,7 @@ import {Environment} from './environment.js';
 import {Estimates} from './estimates.js';
 import {Labels} from './labels.js';
 import {Dots, FieldsOfView, SelectionRing, Zones} from './overlays.js';
+import {Paths} from './paths.js';
 import {isSoftware} from './resolution.js';
 import {Assets} from './shapes.js';
 import {Sounds} from './sounds.js';
@@ -43,6 +44,7 @@ export function makeLayers(canvas, problem, changed) {
     otherEstimates: new Estimates(scene, assets),
     trails: new Trails(scene),
     estimateTrails: new Trails(scene),
+    paths: new Paths(scene),
     views: new FieldsOfView(scene),
     currents: new CurrentArrows(scene),
     dots: new Dots(scene),
@@ -61,6 +63,7 @@ export function applyOptions(layers, options) {
     estimates.showGhosts = get('ghosts');
     estimates.showEllipsoids = get('ellipsoids');
   }
+  layers.paths.root.visible = get('paths');
   layers.zones.root.visible = get('zones');
   layers.bodies.setShapes(get('shapes'));
   layers.currents.which = get('currents');

@@ -112,13 +112,13 @@ export class Recording {
   seek(time_us) {
     this.now_us = Math.min(this.hello.end_us, Math.max(this.hello.start_us, time_us));
     const count = countUntil(this.texts, this.now_us);
-    for (const op of ['scene', 'scores']) {
+    for (const op of ['scene', 'scores', 'paths']) {
       const last = this.texts.slice(0, count).findLast((entry) => entry.op === op);
       if (last && last !== this.scene) this.deliver(last);
     }
     this.sendState(true);
     for (let i = countUntil(this.texts, this.now_us - BEFORE_US); i < count; ++i)
-      if (!['scene', 'scores'].includes(this.texts[i].op)) this.deliver(this.texts[i]);
+      if (!['scene', 'scores', 'paths'].includes(this.texts[i].op)) this.deliver(this.texts[i]);
     this.sendStatus();
   }
 

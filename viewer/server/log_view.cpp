@@ -134,6 +134,8 @@ void LogView::seek(std::int64_t time_us) {
   // What holds at this time, then what happened shortly before it.
   send_event_at(index_.scene_at(time_us).offset);
   if (const auto scores = index_.scores_at(time_us)) send_event_at(scores->offset);
+  messages_.rewind_paths(std::numeric_limits<std::int64_t>::min());
+  for (const std::uint64_t offset : index_.paths_at(time_us)) send_event_at(offset);
   const std::uint64_t from = index_.bodies_at(time_us - before_us).offset;
   TrafficHistory::Point counted = index_.counts_before(from);
   traffic_.set_counts(std::move(counted.counts));

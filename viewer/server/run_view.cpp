@@ -85,6 +85,7 @@ void RunView::moved(const sim::World& world, const sim::RunControl& control, boo
                     const std::string& programs) {
   jump_ = true;
   traffic_.rewind(world.now().count());
+  messages_.rewind_paths(world.now().count());
   past_.start_branch(control.branch, world.now().count(), last_us_, continues);
   past_.set_programs(programs);
   last_us_ = world.now().count();

@@ -49,12 +49,25 @@ std::string estimate_text(const std::string& vehicle, const VehicleEstimate& est
   return json_text(item);
 }
 
+std::string path_text(const std::string& channel, const VehiclePath& path, std::int64_t time_us) {
+  Json points = Json::array();
+  for (const VehiclePath::Point& point : path.points)
+    points.push_back({point.x_m, point.y_m, number_or_null(point.depth_m)});
+  return json_text({{"channel", channel},
+                    {"vehicle", path_vehicle(channel)},
+                    {"time_us", time_us},
+                    {"points", std::move(points)},
+                    {"loop", path.loop}});
+}
+
 void ViewMessages::take(std::string_view channel, std::span<const std::byte> payload) {
   try {
-    if (!channel.starts_with("sim."))
-      take_estimate(channel, payload);
-    else
+    if (channel.starts_with("sim.")) {
       take_named(channel, payload);
+    } else {
+      take_path(channel, payload);
+      take_estimate(channel, payload);
+    }
   } catch (const std::exception&) {
     ++bad_messages_;
   }
@@ -188,6 +201,38 @@ void ViewMessages::take_scores(std::span<const std::byte> payload) {
                                       {"rules", std::move(rules)}}));
 }
 
+/// Also without a page: paths are rare, and a page that comes later needs them.
+void ViewMessages::take_path(std::string_view channel, std::span<const std::byte> payload) {
+  auto path = read_path(payload);
+  if (!path) return;
+  constexpr std::size_t max_channels = 300, max_kept = 100;
+  auto known = paths_.find(channel);
+  if (known == paths_.end()) {
+    if (paths_.size() >= max_channels) return;
+    known = paths_.emplace(std::string(channel), std::deque<Path>()).first;
+  }
+  std::deque<Path>& all = known->second;
+  const std::int64_t at_us = time_us(path->utime);
+  while (!all.empty() && all.back().time_us > at_us) all.pop_back();  // the run was rewound
+  if (!all.empty() && all.back().path.leads_along(*path)) return;
+  all.push_back({at_us, std::move(*path)});
+  if (all.size() > max_kept) all.pop_front();
+  paths_changed_ = true;
+}
+
+void ViewMessages::rewind_paths(std::int64_t time_us) {
+  for (auto& [channel, all] : paths_)
+    for (; !all.empty() && all.back().time_us > time_us; paths_changed_ = true) all.pop_back();
+}
+
+void ViewMessages::send_paths() {
+  if (!std::exchange(paths_changed_, false)) return;
+  std::string items;
+  for (const auto& [channel, all] : paths_)
+    if (!all.empty()) items += (items.empty() ? "" : ",") + path_text(channel, all.back().path, all.back().time_us);
+  server_.retain("paths", "{\"op\":\"paths\",\"items\":[" + items + "]}");
+}
+
 void ViewMessages::take_estimate(std::string_view channel, std::span<const std::byte> payload) {
   if (server_.clients() == 0) return;
   const auto estimate = read_estimate(channel, payload);
@@ -211,6 +256,7 @@ void ViewMessages::flush() {
     if (!std::exchange(estimate.is_new, false)) continue;
     items += (items.empty() ? "" : ",") + estimate.json;
   }
+  send_paths();
   if (auto events = earlier_.text_for(server_.clients())) server_.retain("events", std::move(*events));
   if (!items.empty()) server_.send_text("{\"op\":\"estimates\",\"items\":[" + items + "]}");
   // The newest poses, to a new page again: a run that is paused makes no others.

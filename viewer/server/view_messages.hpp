@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <optional>
 #include <span>
@@ -13,6 +14,7 @@
 #include "bridges/web/page_output.hpp"
 #include "sim/bus/bus.hpp"
 #include "viewer/estimates/vehicle_estimate.hpp"
+#include "viewer/estimates/vehicle_path.hpp"
 #include "viewer/log/state_frame.hpp"
 #include "viewer/page_data/earlier_events.hpp"
 
@@ -21,8 +23,11 @@ namespace viewer {
 /// Returns an item of the text `estimates` of the page protocol.  `time_us`: simulated time of the estimate.
 std::string estimate_text(const std::string& vehicle, const VehicleEstimate& estimate, std::int64_t time_us);
 
-/// Passes messages of a bus or a log on to the pages: scene, assets, sounds, events, scores and estimates, and, if
-/// there is no simulator in this process, the poses.  A message that cannot be read is counted and left out.
+/// Returns an item of the text `paths` of the page protocol.  `time_us`: simulated time of the path.
+std::string path_text(const std::string& channel, const VehiclePath& path, std::int64_t time_us);
+
+/// Passes messages of a bus or a log on to the pages: scene, assets, sounds, events, scores, estimates and paths, and,
+/// if there is no simulator in this process, the poses.  A message that cannot be read is counted and left out.
 class ViewMessages {
  public:
   /// Whether `sim.bodies` make the state frames.
@@ -46,6 +51,8 @@ class ViewMessages {
     earlier_.page_left();
     poses_are_new_ = true;
   }
+  /// Forgets the paths after a simulated time, to which the run went back: those before count again.
+  void rewind_paths(std::int64_t time_us);
   /// Marks the next state as a jump in time.
   void mark_jump() { jump_ = true; }
   /// Sets the UTC of simulated time 0, us since 1970, which message stamps include.
@@ -74,6 +81,12 @@ class ViewMessages {
     bool is_new = false;
   };
 
+  /// Path of a channel, at the simulated time that its message says.
+  struct Path {
+    std::int64_t time_us = 0;
+    VehiclePath path;
+  };
+
   bool take_named(std::string_view channel, std::span<const std::byte> payload);
   void take_scene(std::span<const std::byte> payload);
   void take_asset(std::span<const std::byte> payload);
@@ -83,6 +96,8 @@ class ViewMessages {
   void take_event(std::span<const std::byte> payload);
   void take_current(std::span<const std::byte> payload);
   void take_scores(std::span<const std::byte> payload);
+  void take_path(std::string_view channel, std::span<const std::byte> payload);
+  void send_paths();
   void take_estimate(std::string_view channel, std::span<const std::byte> payload);
   std::int64_t time_us(std::int64_t utime) const { return utime - epoch_us_; }
 
@@ -100,7 +115,9 @@ class ViewMessages {
   std::int32_t branch_ = 0;
   StateFrame frame_;
   EarlierEvents earlier_;
-  std::map<std::string, Estimate, std::less<>> estimates_;  // newest by vehicle
+  std::map<std::string, Estimate, std::less<>> estimates_;      // newest by vehicle
+  std::map<std::string, std::deque<Path>, std::less<>> paths_;  // by channel and time
+  bool paths_changed_ = false;
   std::int64_t bad_messages_ = 0;
 };
 

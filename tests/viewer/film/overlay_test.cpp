@@ -7,8 +7,11 @@
 #include <limits>
 #include <stdexcept>
 
+#include "shoal/waypoints_command_t.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world_file/load_world.hpp"
+#include "tests/experiment/replay/recorded_run.hpp"
+#include "tests/scratch_folder.hpp"
 #include "viewer/images/overview.hpp"
 
 namespace {
@@ -104,10 +107,64 @@ TEST(Overlay, DrawsTheRaysOfALaserFromTheSensorToTheHit) {
   EXPECT_EQ(green(image, 129, 50), 0);
 }
 
+/// A log of a path from (-1, 0) to (3, 0), 2 m below the surface, which was published after 0.1 s.
+std::string log_of_a_path(const test_support::ScratchFolder& folder, const std::string& world) {
+  const std::string log = folder.file("run.lcm");
+  test::RecordedRun run(world, log);
+  for (int i = 0; i < 10; ++i) run.world.step();
+  shoal::waypoints_command_t path{};
+  path.utime = run.world.epoch_us() + run.world.now().count();
+  path.n = 2;
+  path.x_m = {-1, 3};
+  path.y_m = {0, 0};
+  path.depth_m = {2, 2};
+  run.recorder.set_time(run.world.now());
+  run.gate.publish("robot.path", shoal::encode(path), run.world.now());
+  return log;
+}
+
+TEST(Overlay, DrawsThePathOfALogThroughItsPoints) {
+  const test_support::ScratchFolder folder;
+  const std::string sea = "shoal: 1\nname: sea\nphysics: {step_s: 0.01}\nmedium: {water: {surface_m: 1}}\n";
+  const std::string log = log_of_a_path(folder, sea);
+  const sim::LoadedWorld loaded = sim::load_world_text(sea, "sea", {});
+  sim::InProcessBus bus;
+  sim::World world(loaded.config, bus);
+  viewer::Overlay::Settings settings;
+  settings.choice = viewer::parse_overlays("paths");
+  const viewer::Overlay overlay(world, settings, {}, viewer::LogPaths(log, 10));
+  // From 10 m to the south of (0, 0, 0) with a focal length of 100 px: 10 px are 1 m.
+  viewer::SceneView view;
+  view.optics.width = 201, view.optics.height = 101;
+  view.optics.focal_px = {100};
+  view.optics.principal_px = {100.5, 50.5};
+  view.X_WS = viewer::look_at({0, -10, 0}, {0, 0, 0});
+  const auto drawn = [&] {
+    viewer::RenderedScene rendered{sim::Image8(201, 101, 3), sim::FloatImage(201, 101, 1)};
+    std::fill(rendered.depth_m.data.begin(), rendered.depth_m.data.end(), std::numeric_limits<float>::infinity());
+    overlay.draw(rendered, view);
+    return rendered.image;
+  };
+  EXPECT_EQ(green(drawn(), 100, 60), 0) << "it has not been published yet";
+  for (int i = 0; i < 20; ++i) world.step();
+  // z = -1 m: row 60.5; from column 90.5 to 130.5, with dots of 6 px at both ends.
+  const sim::Image8 image = drawn();
+  for (const int column : {95, 110, 125}) {
+    EXPECT_GT(green(image, column, 60), 150) << column;
+    EXPECT_EQ(green(image, column, 57), 0) << column;
+  }
+  for (const int column : {90, 130}) EXPECT_GT(green(image, column, 58), 150) << column;
+  EXPECT_EQ(green(image, 85, 60), 0);
+  EXPECT_EQ(green(image, 136, 60), 0);
+}
+
 TEST(Overlay, NamesWhatItCanDraw) {
   EXPECT_TRUE(viewer::parse_overlays("rays").rays);
   EXPECT_FALSE(viewer::parse_overlays("rays").labels);
   EXPECT_TRUE(viewer::parse_overlays("all").rays);
+  EXPECT_TRUE(viewer::parse_overlays("all").paths);
+  EXPECT_TRUE(viewer::parse_overlays("paths,clock").paths);
+  EXPECT_FALSE(viewer::parse_overlays("trails").paths);
   EXPECT_TRUE(viewer::parse_overlays("rays").any());
   EXPECT_FALSE(viewer::parse_overlays("none").any());
   EXPECT_THROW(viewer::parse_overlays("beams"), std::invalid_argument);

@@ -9,6 +9,7 @@
 
 #include "bridges/log/record_file.hpp"
 #include "experiment/replay/replay.hpp"
+#include "shoal/waypoints_command_t.hpp"
 #include "tests/viewer/server/log_page.hpp"
 
 // A log that is played, and another one beside it.
@@ -191,6 +192,49 @@ TEST_F(LogDifference, IsThatOfAReplay) {
   const experiment::ReplayOutcome replayed = experiment::replay(options);
   ASSERT_TRUE(replayed.first);
   EXPECT_EQ(replayed.first->step, *difference->step);
+}
+
+/// A log of ten seconds with a path to x = k m after k seconds, for k = 1 and 9.
+struct PathLog {
+  PathLog() {
+    test::RecordedRun run(test::falling_ball() + "\n", path);
+    bridges::ViewPublisher view(run.gate, run.world, {}, [] { return true; });
+    view.after_step();
+    for (int i = 1; i <= 1000; ++i) {
+      run.world.step();
+      if (i == 100 || i == 900) publish(run, i / 100);
+      view.after_step();
+    }
+  }
+  static void publish(test::RecordedRun& run, double x_m) {
+    const sim::Time now = run.world.now();
+    run.recorder.set_time(now);
+    shoal::waypoints_command_t path{};
+    path.utime = run.world.epoch_us() + now.count();
+    path.n = 1;
+    path.x_m = {x_m};
+    path.y_m = path.depth_m = {0};
+    run.gate.publish("ball.path", shoal::encode(path), now);
+  }
+  test_support::ScratchFolder folder;
+  const std::string path = folder.file("run.lcm");
+};
+
+TEST(LogView, ASeekShowsThePathThatHeldThenHoweverOldItWas) {
+  const PathLog log;
+  test::LogPage page(log);
+  page.pause();
+  const auto end_after_seek = [&](std::int64_t time_us, double expected) {
+    page.seek(time_us);
+    const auto text = page.text_when("paths", [&](const web_test::Json& paths) {
+      return paths["items"].empty() ? expected == 0 : paths["items"][0]["points"][0][0] == expected;
+    });
+    return !text.is_null();
+  };
+  EXPECT_TRUE(end_after_seek(8'900'000, 1));  // of 7.9 s before
+  EXPECT_TRUE(end_after_seek(9'500'000, 9));
+  EXPECT_TRUE(end_after_seek(500'000, 0));
+  EXPECT_TRUE(end_after_seek(2'000'000, 1));
 }
 
 TEST(LogView, RefusesToSteer) {

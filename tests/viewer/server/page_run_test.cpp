@@ -175,6 +175,43 @@ TEST(PageRun, AfterARewindThePageGetsTheMessagesOfTheBranchThatItIsOn) {
   EXPECT_EQ(second.header["fields"]["branch"], 1);
 }
 
+/// With two paths, after one and after two seconds.
+const std::string planned =
+    falling +
+    "events:\n"
+    "  - {name: near, at: 1, do: [{publish: {channel: ball.path, type: shoal.waypoints_command_t, value: {x_m: [0, "
+    "4],\n"
+    "     y_m: [1, 1], depth_m: [.nan, .nan]}}}]}\n"
+    "  - {name: far, at: 2, do: [{publish: {channel: ball.path, type: shoal.waypoints_command_t, value: {x_m: [0, 9],\n"
+    "     y_m: [1, 1], depth_m: [3, 3], loop: true}}}]}\n";
+
+TEST(PageRun, ShowsThePathsThatHold) {
+  PageRun run("", planned);
+  const auto paths_in_steps_to = [&](std::int64_t step) {
+    run.page->control("step", 150);
+    auto paths = run.page->text("paths");
+    run.page->text("status", [&](const web_test::Json& status) { return status["step"] == step; });
+    return paths;
+  };
+  const auto near = paths_in_steps_to(150);
+  ASSERT_EQ(near["items"].size(), 1u);
+  EXPECT_EQ(near["items"][0]["channel"], "ball.path");
+  EXPECT_EQ(near["items"][0]["vehicle"], "ball");
+  EXPECT_EQ(near["items"][0]["points"], web_test::Json::parse("[[0.0, 1.0, null], [4.0, 1.0, null]]"));
+  EXPECT_EQ(near["items"][0]["loop"], false);
+  const auto far = paths_in_steps_to(300);
+  EXPECT_EQ(far["items"][0]["points"][1], web_test::Json::parse("[9.0, 1.0, 3.0]"));
+  EXPECT_EQ(far["items"][0]["loop"], true);
+  // A page that comes later has it too.
+  test::ViewPage late(run.url);
+  EXPECT_EQ(late.text("paths")["items"][0]["points"][1][0], 9);
+  // Back at 1.5 s the first one holds again, at 0.5 s none.
+  run.page->control("rewind", 1.5);
+  EXPECT_EQ(run.page->text("paths")["items"][0]["points"][1][0], 4);
+  run.page->control("rewind", 1);
+  EXPECT_EQ(run.page->text("paths")["items"].size(), 0u);
+}
+
 TEST(PageRun, ListsItsBranchesAndWhereTheyDiffer) {
   const test_support::ScratchFolder folder;
   PageRun run(folder.file("run.lcm"));

@@ -47,9 +47,8 @@ std::optional<double> parse_visibility(const std::string& text) {
 
 CLI::Option* add_overlay_option(CLI::App& command, std::string& text) {
   return command
-      .add_option(
-          "--overlay", text,
-          "trails, ellipses (estimates of a log), pings, rays (of laser scanners), labels and clock; all or none")
+      .add_option("--overlay", text,
+                  "trails, paths, ellipses (of a log), pings, rays (of laser scanners), labels and clock; all or none")
       ->type_name("LIST");
 }
 

@@ -180,7 +180,11 @@ void take_all(const SnapArguments& arguments, viewer::FilmSource& source) {
   if (arguments.overlay.ellipses && !source.log().empty())
     estimates =
         viewer::LogEstimates(source.log(), arguments.at_s - trail_s, std::max(arguments.at_s, arguments.until_s), 0.5);
-  viewer::Overlay overlay(source.world(), {arguments.overlay, trail_s, 2000, ""}, std::move(estimates));
+  viewer::LogPaths paths;
+  if (arguments.overlay.paths && !source.log().empty())
+    paths = viewer::LogPaths(source.log(), std::max(arguments.at_s, arguments.until_s));
+  viewer::Overlay overlay(source.world(), {arguments.overlay, trail_s, 2000, ""}, std::move(estimates),
+                          std::move(paths));
   const viewer::PingObserver pings(source.world(), overlay);
   viewer::ScenePainter painter(source.world());
   int number = 0;
