@@ -20,7 +20,7 @@ std::size_t spaced(std::size_t i, std::size_t kept, std::size_t size) {
 
 }  // namespace
 
-bool VehiclePath::Point::operator==(const experiment::Point& other) const {
+bool VehiclePath::Point::operator==(const Point& other) const {
   const bool same_depth = depth_m == other.depth_m || (std::isnan(depth_m) && std::isnan(other.depth_m));
   return x_m == other.x_m && y_m == other.y_m && same_depth;
 }

@@ -19,13 +19,13 @@ struct VehiclePath {
   struct Point {
     double x_m = 0, y_m = 0;
     double depth_m = 0;  ///< below the still surface; NaN: not given
-    bool operator==(const experiment::Point& other) const;
+    bool operator==(const Point& other) const;
   };
   /// Maximum number of points: of a longer path evenly spaced ones are kept.
-  static constexpr std::size_t experiment::max_points = 1000;
+  static constexpr std::size_t max_points = 1000;
 
   std::int64_t utime = 0;  ///< by the clock of the vehicle
-  std::vector<experiment::Point> points;
+  std::vector<Point> points;
   bool loop = false;  ///< from the last point to the first
 
   /// Returns whether the other one leads along the same points.

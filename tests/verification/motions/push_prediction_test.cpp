@@ -26,13 +26,13 @@ motion::PushMargin margin_of(std::vector<double> withstood_mps) {
 TEST(PushPrediction, BetweenTwoDirectionsTheBoundIsAStraightLine) {
   // Four directions of 1 m/s: a square.
   const motion::PushMargin square = margin_of({1, 1, 1, 1});
-  for (int i = 0; i < 4; ++i) EXPECT_NEAR(margin_at(square, i * quarter_turn), 1, 1e-12);
-  EXPECT_NEAR(margin_at(square, quarter_turn / 2), std::sqrt(0.5), 1e-12);
-  EXPECT_NEAR(margin_at(square, -quarter_turn / 2), std::sqrt(0.5), 1e-12);
-  EXPECT_NEAR(margin_at(square, 4 * quarter_turn + quarter_turn / 2), std::sqrt(0.5), 1e-12);
+  for (int i = 0; i < 4; ++i) EXPECT_NEAR(verification::margin_at(square, i * quarter_turn), 1, 1e-12);
+  EXPECT_NEAR(verification::margin_at(square, quarter_turn / 2), std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(verification::margin_at(square, -quarter_turn / 2), std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(verification::margin_at(square, 4 * quarter_turn + quarter_turn / 2), std::sqrt(0.5), 1e-12);
   // x / 2 + y = 1 at x = y: 2/3 of each.
-  EXPECT_NEAR(margin_at(margin_of({2, 1, 1, 1}), quarter_turn / 2), std::hypot(2.0 / 3, 2.0 / 3), 1e-12);
-  EXPECT_EQ(margin_at(margin_of({2, 0, 1, 1}), quarter_turn / 2), 0);
+  EXPECT_NEAR(verification::margin_at(margin_of({2, 1, 1, 1}), quarter_turn / 2), std::hypot(2.0 / 3, 2.0 / 3), 1e-12);
+  EXPECT_EQ(verification::margin_at(margin_of({2, 0, 1, 1}), quarter_turn / 2), 0);
 }
 
 PushTrial push_trial(double mps, double withstood_mps, double displacement_m, bool fell) {
