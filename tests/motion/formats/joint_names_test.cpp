@@ -21,7 +21,7 @@ TEST(JointNames, OfTheErs7AreThoseOfSonyAndTekkotsu) {
   EXPECT_EQ(file.lists[0].names.size(), 20u);
   EXPECT_TRUE(file.lists[0].complete);
   EXPECT_EQ(file.lists[0].design, "DRX-1000");
-  EXPECT_EQ(file.lists[1].names.size(), 18u) << "all but the ears";
+  EXPECT_EQ(file.lists[1].names.size(), 44u) << "18 joints, all but the ears, and 26 lights";
 }
 
 TEST(JointNames, OfTheBittleAreNumbersOfOpencat) {
