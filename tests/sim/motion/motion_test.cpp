@@ -93,7 +93,7 @@ TEST(JointMotion, SaysWhatIsWrongWithASound) {
   const auto error = [](const std::string& sound) {
     return MotionFile("shoal: 1\nmotion: m\nkeys: [{at_s: 0, joints: {hip: 1}}]\nsounds: [" + sound + "]\n").error();
   };
-  EXPECT_THAT(error("{at_s: 0}"), HasSubstr("FILE:4:11: sound 1: missing key 'sound'"));
+  EXPECT_THAT(error("{at_s: 0}"), HasSubstr("FILE:4:10: sound 1: missing key 'sound'"));
   EXPECT_THAT(error("{at_s: -1, sound: bark}"), HasSubstr("'at_s' must be >= 0"));
   EXPECT_THAT(error("{at_s: 0, sound: bark, volume: 2}"), HasSubstr("'volume' must be >= 1e-06 and <= 1, got 2"));
 }
