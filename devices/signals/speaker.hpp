@@ -20,6 +20,14 @@ struct SpeakersInAir {
   std::map<std::string, const Speaker*> all;
 };
 
+/// Sound that a speaker plays.
+struct PlayedSound {
+  std::int64_t number = 0;  ///< among the sounds of the speaker
+  double volume = 1;        ///< share of its sound pressure
+  sim::Time until{0};
+  void visit_state(sim::StateArchive& archive) { archive(number, volume, until); }
+};
+
 /// Loudspeaker that plays named sounds, each with its duration and its level at 1 m.  It radiates equally in all
 /// directions.
 class Speaker final : public sim::Sensor, public sim::UnhashedUntilUsed {
@@ -37,13 +45,7 @@ class Speaker final : public sim::Sensor, public sim::UnhashedUntilUsed {
     std::vector<SoundParams> sounds;
     void read(sim::ParamReader& in);
   };
-  /// Sound that is played.
-  struct Playing {
-    std::int64_t number = 0;  ///< among its sounds
-    double volume = 1;
-    sim::Time until{0};
-    void visit_state(sim::StateArchive& archive) { archive(number, volume, until); }
-  };
+  using Playing = PlayedSound;
 
   Speaker(const Params& params, const sim::DeviceContext& context);
   ~Speaker() override;
