@@ -156,7 +156,7 @@ std::optional<std::string> TimeControl::execute(const std::string& command, cons
   const auto run_on = [&] {
     if (!text.empty() && text != "run")
       throw std::runtime_error("'rewind' takes the text 'run' or none, got '" + sim::shortened(sim::printable(text)) +
-                               "'");
+                               "'; the seconds are its value: `shoal control rewind --value 30`");
     return text == "run";
   };
   // Snapshots and moves in time.

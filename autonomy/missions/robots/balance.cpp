@@ -11,6 +11,8 @@ namespace autonomy {
 
 namespace {
 
+constexpr double gravity_mps2 = 9.80665;
+
 /// Gain of a first-order low-pass filter for a time step.
 double share(double time_s, double time_constant_s) {
   return time_s / (time_s + time_constant_s);
@@ -32,7 +34,7 @@ Balance::Balance(const Params& params) : params_(params) {
 }
 
 void Balance::receive(const shoal::inclination_t& message) {
-  if (filter_) return filter_->correct(message.utime, message.pitch_rad);
+  if (filter_) return filter_->correct(message.utime, without_acceleration(message.pitch_rad));
   bool is_new = false;
   const auto dt_s = tilt_interval_.take(message.utime, is_new);
   if (!is_new) return;
@@ -47,6 +49,11 @@ void Balance::receive(const shoal::imu_t& message) {
   take_rate(filter_->rate_radps(), params_.period_s);
   tilt_rad_ = filter_->tilt_rad();
   tilt_known_ = true;
+}
+
+/// An inclinometer measures the direction of the specific force: tilt - acceleration / g for small angles.
+double Balance::without_acceleration(double inclination_rad) const {
+  return was_tilted_ ? inclination_rad + acceleration_mps2_ / gravity_mps2 : inclination_rad;
 }
 
 void Balance::take_rate(double rate_radps, double dt_s) {
@@ -108,7 +115,11 @@ std::optional<Balance::Torques> Balance::step() {
   // The encoders measure the rotation of the wheels relative to the body, which rotates itself.
   const double part = share(p.period_s, p.speed_filter_s);
   const double rolled_mps = p.wheel_radius_m * ((left_radps_ + right_radps_) / 2 + rate_radps_);
+  const double before_mps = speed_mps_;
   speed_mps_ += part * (rolled_mps - speed_mps_);
+  constexpr double inclinometer_filter_s = 0.3;  // that of the device, so that both are late alike
+  acceleration_mps2_ +=
+      share(p.period_s, inclinometer_filter_s) * ((speed_mps_ - before_mps) / p.period_s - acceleration_mps2_);
   turn_radps_ += part * (p.wheel_radius_m * (right_radps_ - left_radps_) / p.track_m - turn_radps_);
 
   // Desired tilt, by the speed or as commanded.

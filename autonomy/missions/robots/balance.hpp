@@ -31,7 +31,9 @@ void check_speeds(const std::vector<SpeedPoint>& points);
 ///     desired = balanced tilt + kv (desired speed - speed) + ki * integral of that
 ///
 /// Tilt and rate are positive forwards.  To accelerate it must tilt forwards, so at first it rolls back a little.  A
-/// commanded tilt replaces the second law: it accelerates until it is as fast as `max_tilt_speed_mps`.
+/// commanded tilt replaces the second law: it accelerates until it is as fast as `max_tilt_speed_mps`.  From the first
+/// one on, the TiltFilter gets the inclination without its error by the acceleration of the wheels, which tilts make
+/// much longer and larger than commands of the speed.
 class Balance {
  public:
   struct Params {
@@ -69,7 +71,10 @@ class Balance {
   void receive(const shoal::twist_command_t& message);
   void drive(double forward_mps, double turn_radps);
   /// Tilts by this from the balanced tilt, positive forwards, at the last turn rate, until drive() is called.
-  void command_tilt(double from_balance_rad) { asked_tilt_rad_ = from_balance_rad; }
+  void command_tilt(double from_balance_rad) {
+    asked_tilt_rad_ = from_balance_rad;
+    was_tilted_ = true;
+  }
 
   /// Computes the torques after all reports up to now.  Nothing until tilt and wheels are known.
   std::optional<Torques> step();
@@ -80,6 +85,7 @@ class Balance {
   double speed_mps() const { return speed_mps_; }
 
  private:
+  double without_acceleration(double inclination_rad) const;
   void take_rate(double rate_radps, double dt_s);
   double tilt_for_speed();
   double tilt_for_command();
@@ -94,6 +100,8 @@ class Balance {
   double speed_mps_ = 0, turn_radps_ = 0;
   double asked_mps_ = 0, asked_turn_radps_ = 0;
   std::optional<double> asked_tilt_rad_ = {};
+  bool was_tilted_ = false;
+  double acceleration_mps2_ = 0;
   double desired_mps_ = 0;  // follows the command with limited acceleration
   double distance_m_ = 0;   // integral of the error of the speed
   double turned_rad_ = 0;   // integral of the error of the turn rate

@@ -186,6 +186,26 @@ TEST(Balance, TiltsAsCommandedAndNoFasterThanItsLimit) {
   }
 }
 
+/// Long accelerations to both sides, as by the keys of a driver, mislead an inclinometer, and so the filter.
+TEST(Balance, StandsByGyroAndInclinometerWhileADriverTiltsItToAndFro) {
+  Balanced test({.filter_s = 3}, "0.005", "0.02", "segway_imu");
+  test.balance_for(10);
+  for (const double tilt_deg : {4.0, 0.0, -4.0, 0.0, 4.0, -4.0, 4.0}) {
+    if (tilt_deg == 0)
+      test.law.drive(0, 0);
+    else
+      test.law.command_tilt(tilt_deg / degrees);
+    test.balance_for(4.5);
+    ASSERT_FALSE(test.law.fallen()) << "at " << tilt_deg << " deg";
+  }
+  test.law.drive(0, 0.5);
+  test.balance_for(5);
+  test.law.drive(0, 0);
+  test.balance_for(20);
+  EXPECT_FALSE(test.law.fallen());
+  EXPECT_NEAR(test.law.speed_mps(), 0, 0.05);
+}
+
 TEST(Balance, LimitsATiltThatIsTooLarge) {
   Balanced test({});
   test.balance_for(5);
