@@ -54,7 +54,7 @@ function processor_s(browser, word) {
 /** From goto to the first frame with poses, in s of wall and of processor time; the first one in a new browser. */
 async function firstFrames(script, count) {
   const times_s = [], processor = [];
-  const browser = await launch();
+  const browser = await launch([]);
   for (let i = 0; i < count; ++i) {
     const server = await new MockServer(script).listen();
     const start_ms = performance.now(), start_s = processor_s(browser, '');
@@ -71,7 +71,7 @@ async function firstFrames(script, count) {
 
 /** Figures of a page that shows a scene for some seconds while it plays. */
 async function load(script, prepare) {
-  const browser = await launch();
+  const browser = await launch([]);
   const server = await new MockServer(script).listen();
   const page = await open(browser, `${server.url}#t=secret`, SIZE);
   const cdp = await page.createCDPSession();

@@ -743,8 +743,10 @@ describe('load', () => {
           probe.software ? ' (no GPU)' : ''}`);
       assert.equal(probe.vehicles.length, 1000);
       assert.ok(probe.draw_calls < 40, `${probe.draw_calls} draw calls`);
-      const i = 537, t_s = probe.time_us / 1e6;
-      near(probe.vehicles[i].position[0], 6.5 * (i % 32) - 100 + Math.sin(t_s + i), 0.01, 'x of one of them');
+      // At a time of a state: between two the page draws straight ways, and a busy machine makes them long.
+      server.paused = true;
+      const i = 537, {vehicles} = await show(page, server, 4);
+      near(vehicles[i].position[0], 6.5 * (i % 32) - 100 + Math.sin(4 + i), 0.01, 'x of one of them');
     }, {width: 640, height: 480});
   });
 });
