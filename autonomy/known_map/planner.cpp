@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "shoal/message_codec.hpp"
+
 namespace autonomy {
 
 namespace {
@@ -51,6 +53,14 @@ void Planner::receive(const shoal::planar_lidar_t& scan) {
     return !(std::abs(static_cast<double>(scan.utime) - static_cast<double>(each.utime)) < kept_us);
   };
   while (scans_.size() > max_kept || is_old(scans_.front())) scans_.pop_front();
+}
+
+void Planner::receive(const shoal::estimate_t& estimate) {
+  constexpr double farthest_m = 1e7;
+  for (const double value : {estimate.position_m[0], estimate.position_m[1]})
+    if (std::abs(value) > farthest_m)
+      throw shoal::MessageError(fmt::format("'position_m' must be within {:g} m, got {:g}", farthest_m, value));
+  estimate_ = estimate;
 }
 
 void Planner::receive(const shoal::waypoints_command_t& goals) {

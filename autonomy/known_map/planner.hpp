@@ -50,7 +50,8 @@ class Planner {
   /// Throws as frame_of().
   void receive(const shoal::occupancy_grid_t& map);
   void receive(const shoal::planar_lidar_t& scan);
-  void receive(const shoal::estimate_t& estimate) { estimate_ = estimate; }
+  /// Throws shoal::MessageError when its position is not within 1e7 m; one that is not finite is uncertain.
+  void receive(const shoal::estimate_t& estimate);
   /// Replaces the goals.  Throws as path_of().
   void receive(const shoal::waypoints_command_t& goals);
   Decision step(std::int64_t utime);

@@ -84,10 +84,11 @@ double baseline_of(const Camera::Params& params, const sim::DeviceContext& conte
   const sim::Pose X_LR = left->X_BS().inverse() * right.X_BS();
   const sim::Vector3d p_LR = X_LR.translation();
   constexpr double rounding = 1e-5;  // of numbers in a file
-  check(
-      X_LR.linear().isIdentity(rounding) && std::hypot(p_LR.x(), p_LR.z()) < rounding && p_LR.y() < -rounding,
-      fmt::format("it must look as {} does, from a place to the right of it; it is at [{:g}, {:g}, {:g}] in its frame",
-                  name, p_LR.x(), p_LR.y(), p_LR.z()));
+  check(X_LR.linear().isIdentity(rounding) && std::hypot(p_LR.x(), p_LR.z()) < rounding && p_LR.y() < -rounding,
+        fmt::format(
+            "it must look as {} does, from a place to the right of it; in its frame it is at [{:g}, {:g}, {:g}], "
+            "turned by {:.3g} deg",
+            name, p_LR.x(), p_LR.y(), p_LR.z(), sim::radians_to_degrees(Eigen::AngleAxisd(X_LR.linear()).angle())));
   return p_LR.norm();
 }
 

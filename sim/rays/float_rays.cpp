@@ -29,7 +29,7 @@ namespace sim {
       const double px = x + along * vx, py = y + along * vy, pz = z + along * vz;
       const double rest = square_radius_m2 - (px * px + py * py + pz * pz);
       const double enter = along - std::sqrt(rest > 0 ? rest : 0) - margin_m;
-      const double outside = (along > 0) & (rest >= 0) ? enter : std::numeric_limits<double>::quiet_NaN();
+      const double outside = ((along > 0) & (rest >= 0)) ? enter : std::numeric_limits<double>::quiet_NaN();
       start_m[i] = over[i] <= 0 ? -margin_m : outside;
     }
   // Round to single precision, and drop invalid rays.

@@ -23,7 +23,8 @@ struct State {
   autonomy::Balance balance;
   std::optional<std::int64_t> started_utime = {}, fell_utime = {};
   std::size_t next_speed = 0;
-  bool waits = false;  ///< it has reported that sensors are missing
+  bool waits = false;     ///< it has reported that sensors are missing
+  bool balanced = false;  ///< it has published torques
 };
 
 int balance(const Options& options) {
@@ -70,6 +71,7 @@ int balance(const Options& options) {
     };
     publish("left_motor.cmd", torques->left_Nm);
     publish("right_motor.cmd", torques->right_Nm);
+    state.balanced = true;
     // Report a fall once.
     if (!balance.fallen() || state.fell_utime) return;
     state.fell_utime = utime;
@@ -78,7 +80,7 @@ int balance(const Options& options) {
     fell.utime = utime;
     client.publish(prefix + "fallen", fell);
   });
-  if (!state.fell_utime) std::cerr << options.name << ": did not fall\n";
+  if (!state.fell_utime) std::cerr << options.name << (state.balanced ? ": did not fall\n" : ": never balanced\n");
   return exit_code;
 }
 

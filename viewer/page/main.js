@@ -364,12 +364,12 @@ class App {
   /** Shows all that moves, with some of its surroundings. */
   fit() {
     const box = this.bodies.boundingBox(), center = box.getCenter(new Vector3());
-    const around_m = Math.max(0.2, Math.min(2, ...this.vehicles.map((vehicle) => 0.5 * vehicle.radius_m)));
+    const around_m = Math.max(0.05, Math.min(2, ...this.vehicles.map((vehicle) => 0.5 * vehicle.radius_m)));
     box.expandByVector(new Vector3(around_m, around_m, 0));
     for (const ghost of this.ghosts.ghosts)
       if (ghost.root.visible) box.expandByPoint(ghost.at);
     // One vehicle alone does not fill the page.
-    const min_size_m = 3.5 * Math.max(0.3, this.vehicles[0]?.radius_m ?? 0);
+    const min_size_m = 2.5 * Math.max(0.05, this.vehicles[0]?.radius_m ?? 0.4);
     box.union(new Box3().setFromCenterAndSize(center, new Vector3(min_size_m, min_size_m, min_size_m)));
     this.cameras.fit(box, this.sides.free);
     this.showMode();

@@ -112,6 +112,13 @@ TEST(Planner, SeesByALidarOfTenScansASecond) {
   EXPECT_THAT(run.planner.step(run.utime + 2 * planner_second).line, HasSubstr("the path is blocked"));
 }
 
+TEST(Planner, RefusesAnEstimateOutsideOfAnyWorld) {
+  PlannerRun run(to({{5, 0}}));
+  shoal::estimate_t estimate{};
+  estimate.position_m[1] = -1e29;
+  EXPECT_THROW(run.planner.receive(estimate), shoal::MessageError);
+}
+
 TEST(Planner, CountsTheScansThatHaveTheTimeOfAnEstimate) {
   PlannerRun run(to({{5, 0}}));
   run.scan_late_us = 1;

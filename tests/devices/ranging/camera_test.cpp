@@ -340,7 +340,7 @@ TEST(Camera, RefusesAStereoPairWhoseImagesDoNotFit) {
       {"lens: fisheye", "'right_of': a stereo pair needs pinholes without distortion"},
       {"readout_s: 0.02", "'right_of': its readout_s and exposure_time_s must be those of 'left'"},
       {"body: left_wheel", "'right_of': it must be on the body of 'left'"},
-      {"position_m: [0, 0.2, 0.4]", "it is at [0, 0.14, 0] in its frame"},
+      {"position_m: [0, 0.2, 0.4]", "in its frame it is at [0, 0.14, 0], turned by 0 deg"},
       {"rpy_deg: [0, 0, 1]", "'right_of': it must look as 'left' does, from a place to the right of it"}};
   for (const auto& [key, error] : cases) {
     // The key replaces the one that the pair has.

@@ -122,10 +122,10 @@ void check_times(const RecordArguments& arguments, const motion::RecordOptions& 
     return command_line::UsageError("--duration must be " + rule + ", got " + sim::number_text(*arguments.duration_s));
   };
   if (options.from_s && *arguments.duration_s <= *options.from_s)
-    throw error("above " + sim::number_text(*options.from_s) + " s, where the recording starts");
+    throw error(fmt::format("above {:.9g} s, where the recording starts", *options.from_s));
   if (!options.over || *arguments.duration_s <= options.over->end_s()) return;
   if (options.to_s || options.over->loop)
-    throw error("at most " + sim::number_text(options.over->end_s()) + " s, the end of " +
+    throw error(fmt::format("at most {:.9g} s, the end of ", options.over->end_s()) +
                 (options.to_s ? "the motion, to which it is played after --punch-out" : "a motion that loops"));
 }
 
@@ -189,7 +189,7 @@ int record(RecordArguments arguments) {
       std::cerr << fmt::format(
           "{}: ended at {:.3f} s, before {:.3f} s where the recording starts: nothing was recorded\n", arguments.file,
           *unused_s, *options.from_s);
-      return exit_code;
+      return exit_code == exit_ok ? exit_bus : exit_code;
     }
     const bool loops = options.over && options.over->loop;
     const std::optional<motion::RecoveredTake> recorded = motion::read_journal(arguments.file);
