@@ -7,7 +7,6 @@ import {Environment} from './environment.js';
 import {Estimates} from './estimates.js';
 import {Labels} from './labels.js';
 import {Dots, FieldsOfView, SelectionRing, Zones} from './overlays.js';
-import {Paths} from './paths.js';
 import {isSoftware} from './resolution.js';
 import {Assets} from './shapes.js';
 import {Sounds} from './sounds.js';
@@ -44,7 +43,6 @@ export function makeLayers(canvas, problem, changed) {
     otherEstimates: new Estimates(scene, assets),
     trails: new Trails(scene),
     estimateTrails: new Trails(scene),
-    paths: new Paths(scene),
     views: new FieldsOfView(scene),
     currents: new CurrentArrows(scene),
     dots: new Dots(scene),
@@ -63,7 +61,7 @@ export function applyOptions(layers, options) {
     estimates.showGhosts = get('ghosts');
     estimates.showEllipsoids = get('ellipsoids');
   }
-  layers.paths.root.visible = get('paths');
+  if (layers.paths) layers.paths.root.visible = get('paths');
   layers.zones.root.visible = get('zones');
   layers.bodies.setShapes(get('shapes'));
   layers.currents.which = get('currents');

@@ -161,7 +161,7 @@ class App {
   jumpTo(time_us) {
     this.sounds.clear();
     this.estimates.rewind(time_us);
-    this.paths.rewind(time_us);
+    this.paths?.rewind(time_us);
     this.otherEstimates.rewind(time_us);
     this.trails.clear();
     this.estimateTrails.clear();
@@ -184,6 +184,20 @@ class App {
     } else if (!this.past.active) {
       this.estimates.add(items);
     }
+  }
+
+  /** Takes the paths that hold; what draws them is loaded with the first of them. */
+  async takePaths(items) {
+    this.pathItems = items;
+    if (!this.paths) {
+      if (items.length === 0) return;
+      const {Paths} = await import('./paths.js');
+      this.paths ??= new Paths(this.scene);
+      if (this.data) this.paths.setScene(this.data, this.vehicles);
+      this.applyOptions();
+    }
+    this.paths.set(this.pathItems);
+    this.dirty = true;
   }
 
   /** Takes the greeting of a server, which may be another one than before. */
@@ -214,7 +228,7 @@ class App {
       scene: () => this.setScene(readScene(message)),
       status: () => this.setStatus(message),
       estimates: () => this.takeEstimates(message.branch, items),
-      paths: () => this.paths.set(items),
+      paths: () => this.takePaths(items),
       sounds: () => this.sounds.origin_m && this.sounds.add(items),
       receptions: () => {
         if (this.sounds.origin_m) this.sounds.addReceptions(items);
@@ -269,7 +283,7 @@ class App {
     this.sounds.setScene(data, this.extent_m);
     this.estimates.setScene(data);
     this.otherEstimates.setScene(data);
-    this.paths.setScene(data, this.vehicles);
+    this.paths?.setScene(data, this.vehicles);
     this.views.setScene(data);
     this.zones.setScene(data, this.extent_m);
     this.instruments.setScene(data);
@@ -489,7 +503,7 @@ class App {
     this.currents.update(time_us, focus, distance_m, this.vehicles);
     this.sounds.update(time_us, this.playback.newest?.speed ?? 1);
     this.estimates.update(X_WVs, (i, at_us) => truthAt(this.vehicles[i], at_us, this.bodies, this.playback));
-    this.paths.update(this.level());
+    this.paths?.update(this.level());
     this.views.update(this.bodies.X_WB, this.selected);
     this.trails.update(time_us);
     this.estimateTrails.update(time_us);
