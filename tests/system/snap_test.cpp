@@ -90,7 +90,7 @@ TEST(Snap, SaysWhatIsWrong) {
       {{world, "--out", out, "--every", "1"}, "--until"},
       {{world, "--out", out, "--at", "3", "--every", "1", "--until", "2"}, "--until: must not be before --at"},
       {{world, "--out", out, "--image", "heat"}, "--image"},
-      {{world, "--out", out, "--overlay", "beams"}, "must be trails, ellipses, pings, rays, labels and clock"},
+      {{world, "--out", out, "--overlay", "beams"}, "must be trails, paths, ellipses, pings, rays, labels and clock"},
       {{world, "--out", out, "--shapes", "round"}, "--shapes"},
       {{world, "--out", out, "--shapes", "wire", "--image", "depth"}, "--shapes: must be drawn for an image without"},
       {{"nothing.yaml", "--out", out}, "nothing.yaml"}};

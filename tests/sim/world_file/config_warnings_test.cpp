@@ -58,7 +58,7 @@ TEST(ConfigWarnings, ReportBodiesOfAnObjectThatAnEventAdds) {
   EXPECT_EQ(warnings_of_file("shoal: 1\nevents:\n- name: deliver\n  at: 1\n  do:\n"
                              "  - add: {object: {name: chair, bodies: [{name: seat, parts: [{shape: box, mass_kg: 1}]},"
                              " {name: foot, parts: [{shape: box, mass_kg: 1}]}]}}\n"),
-            "worlds/test.yaml:6:90: event 'deliver': action 1: object 'chair': body 'foot': no joints connect it with "
+            "worlds/test.yaml:6:91: event 'deliver': action 1: object 'chair': body 'foot': no joints connect it with "
             "body 'seat': it moves on its own\n");
 }
 
