@@ -175,7 +175,8 @@ TEST(RecordView, RefusesWhatARecordingCannotHave) {
   // The first action of a list is taken back when the second one is refused.
   EXPECT_THAT(refused("do", "[" + add_box("box") + ", {remove: dog}]"), HasSubstr("cannot be removed"));
   EXPECT_THAT(refused("do", "{remove: box}"), HasSubstr("'remove' names no vehicle or object 'box'"));
-  EXPECT_THAT(refused("spawn", "{name: other, file: rover.yaml}"), HasSubstr("one cannot be spawned, only objects be added"));
+  EXPECT_THAT(refused("spawn", "{name: other, file: rover.yaml}"),
+              HasSubstr("one cannot be spawned, only objects be added"));
   // What makes the recording would stop, or play other frames.
   EXPECT_THAT(refused("do", "{set: {device: dog/player, values: {motions: []}}}"),
               HasSubstr("'dog/player' makes the recording, and cannot be changed by it"));
