@@ -5,14 +5,17 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <limits>
+#include <string>
 
 #include "bridges/base/bus_error.hpp"
 
 namespace bridges {
 
 PollSet::PollSet() : epoll_(epoll_create1(EPOLL_CLOEXEC)) {
-  if (epoll_ < 0) throw BusError("no file descriptor is available for the bus");
+  if (epoll_ < 0) throw BusError(std::string("the bus needs epoll: epoll_create1: ") + std::strerror(errno));
 }
 
 PollSet::~PollSet() {
@@ -23,7 +26,8 @@ void PollSet::add(int fd, void* tag) {
   epoll_event event{};
   event.events = EPOLLIN | EPOLLEXCLUSIVE;
   event.data.ptr = tag;
-  if (epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event) != 0) throw BusError("epoll_create1 failed; the bus requires epoll");
+  if (epoll_ctl(epoll_, EPOLL_CTL_ADD, fd, &event) != 0)
+    throw BusError(std::string("cannot watch a socket of the bus: epoll_ctl: ") + std::strerror(errno));
 }
 
 void PollSet::remove(int fd) {

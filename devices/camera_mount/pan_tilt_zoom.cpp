@@ -71,7 +71,8 @@ PanTiltZoom::PanTiltZoom(const Params& params, const sim::DeviceContext& context
     const ServoOfVehicle servo = find_servo(context, axis_names[axis], name);
     if (!names.empty() && names.front() == servo.device)
       refuse(context, "'pan' and 'tilt' must be two servos, got '" + servo.device + "' twice");
-    turning_[axis] = Turning{names.size(), &context.joint(servo.params->joint), servo.params->axis};
+    turning_[axis] =
+        Turning{names.size(), &context.joint(servo.params->joint), servo.params->axis, servo.params->max_velocity};
     names.push_back(servo.device);
   }
   if (!names.empty()) servos_.emplace(context, names);
@@ -144,7 +145,8 @@ double PanTiltZoom::high(Axis axis) {
 }
 
 double PanTiltZoom::max_speed(Axis axis) const {
-  return axis == zoom ? params_.zoom_speed_radps : axis == pan ? params_.pan_speed_radps : params_.tilt_speed_radps;
+  if (axis == zoom) return params_.zoom_speed_radps;
+  return std::min(axis == pan ? params_.pan_speed_radps : params_.tilt_speed_radps, turning_[axis]->max_velocity_radps);
 }
 
 void PanTiltZoom::command(const std::array<Command, axes>& commands) {
@@ -165,11 +167,11 @@ void PanTiltZoom::command(const std::array<Command, axes>& commands) {
     const auto& [position, velocity] = commands[axis];
     if (!has(axis) || (std::isnan(position) && std::isnan(velocity))) continue;
     Motion& motion = motions_[axis];
-    if (motion.mode == Mode::free && axis != zoom)
-      motion.set_point.position = servos_->set_point(turning_[axis]->servo);
-    motion.mode = std::isnan(position) ? Mode::velocity : Mode::position;
-    motion.target = std::clamp(std::isnan(position) ? velocity : position, -max_target, max_target);
-    motion.speed = std::isnan(position) || std::isnan(velocity) ? no_limit : velocity;
+    if (axis != zoom) motion.set_point.position = servos_->set_point(turning_[axis]->servo);
+    const bool runs = std::isnan(position) || velocity == 0;  // to a position without speed: it stops
+    motion.mode = runs ? Mode::velocity : Mode::position;
+    motion.target = std::clamp(runs ? velocity : position, -max_target, max_target);
+    motion.speed = runs || std::isnan(velocity) ? no_limit : velocity;
   }
 }
 
@@ -186,7 +188,8 @@ void PanTiltZoom::move(Axis axis, const sim::ActContext& context) {
     at.run(target, low(axis), high(axis), limits, context.step_s);
   at.position = std::clamp(at.position, low(axis), high(axis));  // rounding
   if (axis != zoom) servos_->command(turning_[axis]->servo, at.position, context.now);
-  const bool is_there = to_position ? at.position == target : target == 0;
+  const bool at_end = (target < 0 && at.position == low(axis)) || (target > 0 && at.position == high(axis));
+  const bool is_there = to_position ? at.position == target : target == 0 || at_end;
   if (is_there) motion.mode = Mode::free;
 }
 

@@ -80,6 +80,7 @@ class PanTiltZoom final : public sim::Sensor {
     std::size_t servo;
     const sim::Joint* joint;
     int axis;
+    double max_velocity_radps;  ///< of the servo
   };
 
   ServoOfVehicle find_servo(const sim::DeviceContext& context, const char* key, const std::string& name) const;

@@ -55,7 +55,7 @@ void Vibration::act(const sim::ActContext& context) {
   strapdown_.measure(
       {world_, vehicle_, context.now, step_s, body_.X_WB() * X_BS_, body_.velocity_at_W(X_BS_.translation())});
   const sim::Vector3d below_high = below_high_.apply(strapdown_.f_S(), step_s);
-  const double magnitude = (below_high - below_low_.apply(strapdown_.f_S(), step_s)).norm();
+  const double magnitude = (below_high - below_low_.apply(below_high, step_s)).norm();
   squares_ += magnitude * magnitude;
   greatest_ = std::max(greatest_, magnitude);
   ++count_;

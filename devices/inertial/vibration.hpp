@@ -7,8 +7,10 @@
 namespace devices {
 
 /// Vibration sensor: root mean square and peak of the acceleration within a band, of each step since the last report.
-/// The band is the difference of two first-order low passes: it falls by 3 dB at its ends, by 6 dB an octave beyond
-/// them, and gravity and slow motions are not in it.  Nothing is known above half the rate of the steps.
+/// The band is a first-order low pass and a first-order high pass, one after the other: each falls by 3 dB at its end
+/// of the band and by 6 dB an octave beyond it.  In the middle of a band of a decade or more the gain is above 0.9, at
+/// that of a narrow one 0.5.  Gravity is in it where the sensor turns within the band.  Nothing is known above half the
+/// rate of the steps.
 class Vibration final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Vibration: root mean square and peak of the acceleration within a band.";

@@ -54,7 +54,8 @@ void TouchController::receive(sim::Time, std::span<const std::byte> payload) {
   const auto message = shoal::decode<shoal::touch_t>(payload, shoal::Finite::required);
   if (!(message.pressure >= 0 && message.pressure <= 1))
     throw std::runtime_error("'pressure' must be >= 0 and <= 1, got " + sim::number_text(message.pressure));
-  touch_.press(message.pressure);
+  // Whoever only says that it is touched presses fully.
+  touch_.press(message.touched && message.pressure == 0 ? 1 : message.pressure);
 }
 
 SHOAL_TRANSCEIVER("touch", Touch, shoal::touch_t, TouchController);

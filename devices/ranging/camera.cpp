@@ -211,8 +211,14 @@ void Camera::zoom(double fov_rad) {
 }
 
 void Camera::change(const Params& params) {
-  params_ = params;
-  if (zoomed_fov_rad_ > 0) params_.optics.fov_rad = zoomed_fov_rad_;
+  Params next = params;
+  if (zoomed_fov_rad_ > 0) {
+    next.optics.fov_rad = zoomed_fov_rad_;
+    if (params.optics.fov_rad != given_fov_rad_ || next.optics.text() != params_.optics.text())
+      throw std::runtime_error("its lens is that of a camera that zooms, and cannot be set");
+  }
+  given_fov_rad_ = params.optics.fov_rad;
+  params_ = std::move(next);
   SharedByCameras& shared = shared_.of(shared_by_cameras);
   sim::RenderOptions options;
   options.kind = render_kind(params.image);

@@ -120,6 +120,7 @@ class Camera final : public sim::Sensor {
   int rays_per_side() const;
 
   Params params_;
+  double given_fov_rad_ = 0;   // that of the parameters, before it zooms
   double zoomed_fov_rad_ = 0;  // 0: that of the parameters
   bool lens_moved_ = false;    // the rays are those of another field of view
   double baseline_m_ = 0;

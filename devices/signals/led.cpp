@@ -60,7 +60,7 @@ Led::Led(const Params& params, const sim::DeviceContext& context)
     while (i < shown_.size() && shown_[i].part != part) ++i;
     const sim::PartInfo& info = parts[static_cast<std::size_t>(part)];
     if (i == shown_.size()) shown_.push_back({part, info.name.substr(prefix), info.color, {}});
-    source.shown.push_back(i);
+    if (std::find(source.shown.begin(), source.shown.end(), i) == source.shown.end()) source.shown.push_back(i);
   };
   for (const Light& light : params.lights) {
     Source& source = sources_.emplace_back(Source{linear(light.color), {}});

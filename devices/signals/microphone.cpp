@@ -6,6 +6,7 @@
 
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/sound_t.hpp"
+#include "sim/base/math.hpp"
 
 namespace devices {
 
@@ -46,8 +47,10 @@ void Microphone::measure(const sim::SenseContext& context) {
     if (level_dB <= loudest_dB) continue;
     loudest_dB = level_dB;
     sound_ = speaker->sound(*playing).name;
-    bearing_rad_ = std::atan2(p_S.y(), p_S.x());
-    elevation_rad_ = std::atan2(p_S.z(), std::hypot(p_S.x(), p_S.y()));
+    constexpr double same_place_m = 1e-6;
+    const bool is_here = p_S.norm() < same_place_m;  // without a direction
+    bearing_rad_ = is_here ? 0 : std::atan2(p_S.y(), p_S.x());
+    elevation_rad_ = is_here ? 0 : std::atan2(p_S.z(), std::hypot(p_S.x(), p_S.y()));
   }
   level_dB_ = 10 * std::log10(all);
   is_update_ = received_before || !sound_.empty();
@@ -56,7 +59,9 @@ void Microphone::measure(const sim::SenseContext& context) {
 
 void Microphone::disturb(double dt_s, sim::Random& random) {
   level_noise_.apply(level_dB_, dt_s, random);
-  if (!sound_.empty()) bearing_noise_.apply(bearing_rad_, dt_s, random);
+  if (sound_.empty()) return;
+  bearing_noise_.apply(bearing_rad_, dt_s, random);
+  bearing_rad_ = sim::wrap_angle(bearing_rad_);
 }
 
 // Publishes shoal.sound_t while a sound is above the ambient noise, and once when that has ended.

@@ -137,9 +137,7 @@ bool has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-void check_light(const sim::MotionTrack& track, const std::vector<std::string>& lights,
-                 std::vector<MotionFinding>& findings) {
-  if (!has(lights, track.joint)) findings.push_back({MotionRule::unknown_light, track.joint});
+void check_light(const sim::MotionTrack& track, std::vector<MotionFinding>& findings) {
   Stretch range(MotionRule::light_range, track.joint, findings);
   for (const sim::TrackKey& key : track.keys) {
     const double limit = std::clamp(key.value, 0.0, 1.0);
@@ -204,6 +202,8 @@ std::vector<MotionFinding> check_motion(const sim::JointMotion& motion, const si
   std::vector<MotionFinding> findings;
   const Servos servos(vehicle);
   const std::vector<std::string> lights = devices::lights_of(vehicle);
+  for (const std::string& light : motion.lights)  // also those that no key has
+    if (!has(lights, light)) findings.push_back({MotionRule::unknown_light, light});
   check_sounds(motion, vehicle, findings);
   // Sample the joints that the vehicle has.
   std::vector<sim::MotionTrack> tracks;
@@ -211,7 +211,7 @@ std::vector<MotionFinding> check_motion(const sim::JointMotion& motion, const si
   for (sim::MotionTrack& track : motion.tracks()) {
     const auto servo = servos.find(track.joint);
     if (motion.is_light(track.joint)) {
-      check_light(track, lights, findings);
+      check_light(track, findings);
     } else if (servo) {
       tracks.push_back(std::move(track));
       servo_of.push_back(*servo);

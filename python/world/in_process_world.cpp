@@ -83,7 +83,7 @@ void InProcessWorld::publish(const std::string& channel, std::span<const std::by
     if (const auto error = shoal::validate(*schema, payload, finite))
       throw shoal::MessageError("'" + channel + "': " + *error);
   }
-  // Whether somebody reads it
+  // Whether a reader subscribes to it
   if (reader == channels().received.end() && !subscribed_.contains(channel) && !known_.contains(channel)) {
     const std::string text = "no device, metric or event reads '" + channel + "'";
     if (const std::string hint = channels().meant(channel, true); !hint.empty()) throw sim::WorldError(text + hint);

@@ -45,7 +45,7 @@ class InProcessWorld {
   /// Throws sim::PhysicsFault; the world then cannot be stepped further, but restored.
   std::int64_t step(std::int64_t count, const Stop& stop = {});
   /// Publishes a payload as a program would; devices get it in the next step.  On a channel without a reader it warns
-  /// once.  Throws sim::WorldError for a channel whose name is close to that of one that somebody reads, and
+  /// once.  Throws sim::WorldError for a channel whose name is close to that of one that has a reader, and
   /// shoal::MessageError for a payload that is not valid, or that the device of the channel refuses.
   void publish(const std::string& channel, std::span<const std::byte> payload);
   /// Publishes a payload that needs no check.

@@ -23,7 +23,7 @@ struct WorldChannels {
   std::map<std::string, std::string, std::less<>> silent;
 
   /// Returns `; did you mean 'NAME'?` for a name that is close to a channel, or to a part of one that ends at a dot;
-  /// empty when none is close.  `received_only`: only to channels that somebody reads.
+  /// empty when none is close.  `received_only`: only to channels that have a reader.
   std::string meant(const std::string& channel, bool received_only) const;
 };
 

@@ -38,7 +38,7 @@ std::string closest_name(std::string_view misspelt, const std::vector<std::strin
 
 /// `; did you mean 'NAME'?` for the name that a misspelt one most likely meant; empty when none is close.  Names that
 /// end with a unit are found without it and with another one: `speed_kmh` gives `; did you mean 'speed_mps', in m/s?`.
-/// A name of version 0.1 gives its present name, a word of other simulators that of Shoal (other_names.hpp).
+/// A word of other simulators gives that of Shoal (other_names.hpp).
 std::string did_you_mean(std::string_view misspelt, const std::vector<std::string>& names);
 
 }  // namespace sim

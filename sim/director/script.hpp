@@ -99,7 +99,7 @@ class Script {
   std::uint64_t next_delayed_ = 0;
   int firings_ = 0;                              ///< in this step
   std::map<std::string, ListedObject> catalog_;  ///< objects that `add: NAME` can add
-  bool catalogd_ = false;
+  bool is_cataloged_ = false;
   Random live_random_;
   std::int64_t live_random_step_ = -1;
   int log_lines_ = 0;

@@ -40,8 +40,8 @@ void Script::command_actor(const std::string& actor, ActorCommand command) {
 }
 
 void Script::make_catalog() {
-  if (catalogd_) return;
-  catalogd_ = true;
+  if (is_cataloged_) return;
+  is_cataloged_ = true;
   for (const ObjectConfig& object : stage_.config().objects) {
     const Pose X_WE = make_pose(object.position_m, object.rpy_rad);
     if (object.count == 1) {

@@ -49,7 +49,8 @@ std::vector<std::string> offenders_in_text(const std::string& text) {
 TEST(InitializedMessages, EveryObjectOfAGeneratedClassHasAnInitializer) {
   const std::filesystem::path root = test_support::source_path("");
   int files = 0;
-  for (const char* folder : {"sim", "messages", "devices", "bridges", "tools", "python", "examples", "tests"})
+  for (const char* folder : {"sim", "messages", "devices", "bridges", "experiment", "autonomy", "viewer", "motion",
+                             "verification", "tools", "python", "examples", "tests"})
     for (const auto& entry : std::filesystem::recursive_directory_iterator(root / folder)) {
       const std::string extension = entry.path().extension().string();
       if (!entry.is_regular_file() || (extension != ".cpp" && extension != ".hpp")) continue;

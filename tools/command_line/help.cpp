@@ -181,7 +181,7 @@ std::string help_text(const CLI::App& command, std::size_t columns) {
                       meaning_of(*option));
   std::string group;
   const auto finish = [&] {
-    text += section(group == CLI::App().get_group() ? "Commands" : "Commands to " + group, commands, columns);
+    text += section(group == command.get_group() ? "Commands" : "Commands to " + group, commands, columns);
     commands.clear();
   };
   for (const CLI::App* each : commands_of(command)) {

@@ -87,7 +87,7 @@ export class Dock {
     tab.setAttribute('aria-controls', `dock-${view.name}`);
     view.root.id = `dock-${view.name}`;
     view.root.setAttribute('role', 'tabpanel');
-    view.root.setAttribute('aria-labeledby', tab.id);
+    view.root.setAttribute('aria-labelledby', tab.id);
     tab.addEventListener('keydown', (event) => {
       const step = {ArrowRight: 1, ArrowLeft: -1}[event.key];
       if (!step) return;

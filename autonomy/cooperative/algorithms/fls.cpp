@@ -191,7 +191,7 @@ JointFilter Trajectory::end(const VectorXd& noise) const {
 class FixedLagSmoother final : public OwnFilterEstimator<FixedLagSmoother> {
  public:
   static constexpr const char* meaning =
-      "fixed-lag smoother: relinearizes the last minutes; what others say is independent";
+      "fixed-lag smoother: relinearizes the last minutes; treats received estimates as independent";
   static constexpr double lag_s = 120;
   /// Fixes each second would make the problem large, while they need no smoothing.
   static constexpr std::size_t max_nodes = 40;

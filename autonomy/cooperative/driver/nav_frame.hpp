@@ -47,8 +47,8 @@ std::size_t payload_room(std::size_t frame_bytes);
 Bytes encode_frame(const NavFrame& frame, std::size_t frame_bytes);
 /// Returns the length of the payload in a frame that encode_frame() made.
 std::size_t payload_length(const Bytes& frame);
-/// Decodes a frame that was transmitted at `tol`, by the sender's clock, within 30 s of `said`.  Nothing for other
-/// bytes.
+/// Decodes a frame that was transmitted at `tol`, by the sender's clock, whose payload_time is within 30 s of it.
+/// Nothing for other bytes.
 std::optional<NavFrame> decode_frame(std::span<const std::uint8_t> bytes, Time tol);
 
 }  // namespace navigation

@@ -35,19 +35,19 @@ struct NavEvent {
 
   Kind kind = Kind::motion;
   Time time = 0;
-  Vector2 v_W = Vector2::Zero();  ///< moved
-  Matrix2 q = Matrix2::Zero();    ///< moved
+  Vector2 v_W = Vector2::Zero();  ///< motion
+  Matrix2 q = Matrix2::Zero();    ///< motion
   Vector2 p_W = Vector2::Zero();  ///< fix
   double std_m = 1;               ///< fix
   ReceivedRange received;         ///< without its payload
   Relative seen;                  ///< without its payload
   Bytes payload;                  ///< of the frame
-  std::size_t max_bytes = 0;      ///< say
+  std::size_t max_bytes = 0;      ///< payload
 };
 
 /// One vehicle with one algorithm.  It makes the calls of the estimator in the order of their times, although packets
 /// are complete seconds after their first sound: it keeps the estimator as it was `window_s` ago and what happened
-/// since, and repeats that.  Before each fix, sound, view and transmission it moves the estimator to that time.  A
+/// since, and repeats that.  Before each fix, range, bearing and transmission it moves the estimator to that time.  A
 /// value: its copies are independent.
 class Navigator {
  public:

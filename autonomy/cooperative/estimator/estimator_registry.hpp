@@ -53,7 +53,7 @@ bool add_algorithm(Algorithm algorithm);
 bool add_family(std::string prefix, std::function<Algorithm(const std::string& rest)> make);
 }  // namespace detail
 
-/// Whether an estimator has a on_bearing() of its own.
+/// Whether an estimator has an on_bearing() of its own.
 template <class Type>
 inline constexpr bool has_own_on_bearing =
     !std::is_same_v<decltype(&Type::on_bearing), void (Estimator::*)(const Relative&)>;

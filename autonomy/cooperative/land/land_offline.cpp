@@ -212,7 +212,7 @@ OfflineRun run_on_land(const LandRecord& record, const Algorithm& algorithm, con
                        std::int64_t period_us) {
   if (!algorithm.on_land)
     throw std::invalid_argument(algorithm.name +
-                                " has no use for relatives of other vehicles: it does not work on land");
+                                " does not use relative measurements of other vehicles: it does not work on land");
   OfflineRun run;
   run.algorithm = algorithm.name;
   run.estimates.resize(record.land.vehicles.size());

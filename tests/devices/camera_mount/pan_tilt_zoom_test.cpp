@@ -124,6 +124,38 @@ TEST(PanTiltZoom, AVelocityGoesOnToTheEndOfTheRange) {
   EXPECT_NEAR(stopped.fov_rad, 10 * deg, 1e-12);  // 20 degrees/s for 2.5 s
 }
 
+TEST(PanTiltZoom, StopsWhereItIs) {
+  // Of a velocity above that of its servo, and of a position; without a run-out of the set point.
+  for (const auto& [moves, stops] : {std::pair{command(nan, nan, nan, 5), command(nan, nan, nan, 0)},
+                                     {command(0.9, nan, nan), command(nan, nan, nan, 0)},
+                                     {command(0.9, nan, nan), command(-0.9, nan, nan, 0)}}) {
+    Mount mount;
+    mount.send(moves);
+    mount.after(0.2);
+    mount.send(stops);
+    EXPECT_NEAR(mount.after(0.3).pan_rad, 0.4, 0.02);  // 2 rad/s for 0.2 s
+  }
+}
+
+TEST(PanTiltZoom, LeavesAServoThatAVelocityHasBroughtToTheEnd) {
+  Mount mount;
+  mount.send(command(nan, nan, nan, nan, 5, nan));
+  mount.after(2);
+  auto* servo = const_cast<devices::JointServo*>(
+      dynamic_cast<const devices::JointServo*>(mount.test.world.find_vehicle("v")->find_device("tilt")->actuator()));
+  servo->set_position(0.3);
+  EXPECT_NEAR(mount.after(2).tilt_rad, 0.3, 0.01);
+}
+
+TEST(PanTiltZoom, TheLensOfItsCameraIsNotSet) {
+  Mount mount;
+  mount.after(0.01);
+  for (const char* values : {"{fov_deg: 20}", "{lens: fisheye}"})
+    EXPECT_THAT(mount.test.change("v/eye", values), HasSubstr("cannot be set")) << values;
+  mount.send(command(nan, nan, 30 * deg));
+  EXPECT_NEAR(mount.after(2).fov_rad, 30 * deg, 1e-9);
+}
+
 TEST(PanTiltZoom, PositionsBeyondTheRangeAreItsEnds) {
   Mount mount;
   mount.send(command(5, -5, 0.01));

@@ -61,6 +61,16 @@ TEST(Touch, FeelsAHandByCommandUntilItLetsGo) {
   EXPECT_EQ(all[1].touched, 0);
 }
 
+TEST(Touch, IsPressedFullyByAHandThatOnlyTouches) {
+  test::TestWorld test(touch_world("", "[0, 0, 50]"));
+  test::Listener<shoal::touch_t> reports(test, "r1.touch");
+  shoal::touch_t hand = press(0);
+  hand.touched = 1;
+  test.send("r1.touch.cmd", hand);
+  test.run_for(0.1);
+  EXPECT_EQ(reports.last().pressure, 1);
+}
+
 TEST(Touch, ContinuesAlikeFromASnapshot) {
   test::SavedRun run(touch_world("", "[0, 0, 0.2]", R"(events:
   - {name: hand, at: 0.5, do: [{publish: {channel: r1.touch.cmd, type: shoal.touch_t, value: {pressure: 0.3}}}]}

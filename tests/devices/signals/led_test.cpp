@@ -68,6 +68,14 @@ TEST(Led, ShowsTheSumOfTheLightsOfAPart) {
   EXPECT_THAT(report.color, ElementsAre(0, 255 * 65536 + 188 * 256));
 }
 
+TEST(Led, APartThatALightNamesTwiceShowsItOnce) {
+  test::TestWorld test(
+      lamp_world("        - {name: led, type: led, lights: [{name: white, parts: [hull/two, hull/two]}]}\n"));
+  test.send("r1.led.cmd", command({{"white", 0.5}}));
+  test.run_for(0.1);
+  EXPECT_THAT(color_of(test, "hull/two").value(), ElementsAre(188, 188, 188));
+}
+
 TEST(Led, UntilItsFirstCommandPartsKeepTheirColorsAndNothingIsReported) {
   test::TestWorld test(lamp_world(lamps));
   test::Listener<shoal::led_t> reports(test, "r1.led");

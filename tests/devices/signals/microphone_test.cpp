@@ -64,6 +64,14 @@ TEST(Microphone, AddsPowersAndPointsToTheLoudest) {
   EXPECT_NEAR(report.elevation_rad, std::atan2(4, 3), 1e-9);
 }
 
+TEST(Microphone, AngleErrorsStayWithinOneTurn) {
+  test::TestWorld test(world_of_sounds(", ambient_dB: 0, rpy_deg: [0, 0, -89], bearing_noise: {bias: 0.1}"));
+  test::Listener<shoal::sound_t> reports(test, "r1.ear");
+  test.run_for(0.5);
+  // The sound is at 179 degrees; 0.1 rad more are behind the sensor, at the other side.
+  EXPECT_NEAR(reports.last().bearing_rad, 179 * std::numbers::pi / 180 + 0.1 - 2 * std::numbers::pi, 1e-9);
+}
+
 TEST(Microphone, ReportsNothingBelowTheAmbientNoiseAndOnceThatASoundHasEnded) {
   test::TestWorld deaf(world_of_sounds(", ambient_dB: 60.1"));
   test::Listener<shoal::sound_t> nothing(deaf, "r1.ear");

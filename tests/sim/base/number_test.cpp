@@ -89,7 +89,8 @@ TEST(Number, TheSearchOfTheNextTestFindsWhatItMust) {
 
 TEST(Number, NoSourceReadsOrWritesOneByTheLocaleOfTheProcess) {
   std::size_t files = 0;
-  for (const char* folder : {"sim", "messages", "devices", "bridges", "tools", "python"})
+  for (const char* folder : {"sim", "messages", "devices", "bridges", "experiment", "autonomy", "viewer", "motion",
+                             "verification", "tools", "python"})
     for (const auto& entry : fs::recursive_directory_iterator(test_support::source_path(folder))) {
       if (entry.path().extension() != ".cpp" && entry.path().extension() != ".hpp") continue;
       std::ifstream in(entry.path());

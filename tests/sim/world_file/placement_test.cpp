@@ -16,7 +16,7 @@ std::vector<sim::Pose> place(Pattern pattern, int count, double jitter_m = 0) {
   return sim::place_instances(config, count, sim::make_pose({10, 20, 0}, {0, 0, 0}), 1, "box");
 }
 
-TEST(Placement, AGridIsCenterdOnTheEntry) {
+TEST(Placement, AGridIsCenteredOnTheEntry) {
   const auto poses = place(Pattern::grid, 4);
   EXPECT_EQ(poses[0].translation(), Vector3d(9, 19, 0));
   EXPECT_EQ(poses[1].translation(), Vector3d(11, 19, 0));
