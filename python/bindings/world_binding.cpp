@@ -287,7 +287,8 @@ void add_world(py::module_& module) {
   add_world_class(module);
   py::class_<Subscription>(module, "Subscription")
       .def("take", &Subscription::take, "Removes and returns the unread messages, oldest first.")
-      .def_property_readonly("dropped", &Subscription::dropped, "Messages that were lost because they were not taken in time.")
+      .def_property_readonly("dropped", &Subscription::dropped,
+                             "Messages that were lost because they were not taken in time.")
       .def_property_readonly("channel", &Subscription::channel);
 }
 
