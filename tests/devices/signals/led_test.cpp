@@ -70,7 +70,8 @@ TEST(Led, ShowsTheSumOfTheLightsOfAPart) {
 
 TEST(Led, APartThatALightNamesTwiceShowsItOnce) {
   test::TestWorld test(
-      lamp_world("        - {name: led, type: led, lights: [{name: white, parts: [hull/two, hull/two]}]}\n"));
+      lamp_world("        - {name: led, type: led, off_color: \"#000000\", lights: [{name: white, parts: [hull/two, "
+                 "hull/two]}]}\n"));
   test.send("r1.led.cmd", command({{"white", 0.5}}));
   test.run_for(0.1);
   EXPECT_THAT(color_of(test, "hull/two").value(), ElementsAre(188, 188, 188));
