@@ -745,7 +745,8 @@ describe('load', () => {
       assert.ok(probe.draw_calls < 40, `${probe.draw_calls} draw calls`);
       // At a time of a state: between two the page draws straight ways, and a busy machine makes them long.
       server.paused = true;
-      const i = 537, again = setInterval(() => server.show(4e6, true), 500);  // none is sent to a page with two unanswered
+      const i = 537,
+            again = setInterval(() => server.show(4e6, true), 500);  // none is sent to a page with two unanswered
       const {vehicles} = await until(page, (p) => p.time_us === 4e6).finally(() => clearInterval(again));
       near(vehicles[i].position[0], 6.5 * (i % 32) - 100 + Math.sin(4 + i), 0.01, 'x of one of them');
     }, {width: 640, height: 480});
