@@ -4,7 +4,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -16,6 +15,7 @@
 #include "experiment/files/json_reader.hpp"
 #include "experiment/files/no_links.hpp"
 #include "experiment/run/version.hpp"
+#include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace experiment {
@@ -59,13 +59,6 @@ std::size_t size_in(const JsonReader& in, const char* key, std::int64_t low, std
 void check_seed(std::int64_t seed, const std::string& where) {
   if (seed < 0 || static_cast<double>(seed) > max_seed)
     throw std::runtime_error(fmt::format("{}: a seed must be from 0 to 2^53, got {}", where, seed));
-}
-
-/// Parses a whole number that is not empty.
-std::optional<std::size_t> whole_number(std::string_view text) {
-  std::size_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace
@@ -229,8 +222,9 @@ std::vector<std::size_t> parse_indices(const std::string& text, std::size_t size
     const std::size_t end = std::min(text.find(',', begin), text.size());
     const std::string item = text.substr(begin, end - begin);
     const std::size_t dash = item.find('-');
-    const auto first = whole_number(std::string_view(item).substr(0, dash));
-    const auto last = dash == std::string::npos ? first : whole_number(std::string_view(item).substr(dash + 1));
+    const auto first = sim::exact_number<std::size_t>(std::string_view(item).substr(0, dash));
+    const auto last =
+        dash == std::string::npos ? first : sim::exact_number<std::size_t>(std::string_view(item).substr(dash + 1));
     if (!first || !last || *first < 1 || *last > size || *last < *first) throw wrong(item);
     for (std::size_t index = *first; index <= *last; ++index) indices.insert(index - 1);
     begin = end + 1;

@@ -4,11 +4,12 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <charconv>
 #include <set>
 #include <stdexcept>
 #include <tuple>
 
+#include "experiment/files/csv.hpp"
+#include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace experiment {
@@ -16,13 +17,6 @@ namespace experiment {
 namespace {
 
 using Fields = std::vector<std::string>;
-
-template <class Number>
-std::optional<Number> number_of(const std::string& text) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
-}
 
 /// Columns before the figures, and after them.
 constexpr const char* first_columns[] = {"case",  "seed",       "exit_code", "passed",
@@ -57,7 +51,7 @@ class RowReader {
     for (std::size_t i = first_figure; i < run_; ++i) {
       std::optional<double>& value = row.figures[head_[i]];
       if (fields[i].empty()) continue;
-      value = number_of<double>(fields[i]);
+      value = sim::exact_number<double>(fields[i]);
       if (!value) wrong(line, fields, i, "a number");
     }
     row.point = static_cast<std::size_t>(whole(line, fields, run_ + 1));
@@ -74,7 +68,7 @@ class RowReader {
 
  private:
   std::int64_t whole(std::size_t line, const Fields& fields, std::size_t column) const {
-    const auto value = number_of<std::int64_t>(fields[column]);
+    const auto value = sim::exact_number<std::int64_t>(fields[column]);
     if (!value || *value < 0) wrong(line, fields, column, "a whole number from 0 on");
     return *value;
   }
@@ -89,26 +83,6 @@ class RowReader {
 };
 
 }  // namespace
-
-std::optional<std::vector<std::string>> csv_fields(std::string_view line) {
-  Fields fields(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    if (quoted && line[i] == '"') {
-      if (i + 1 < line.size() && line[i + 1] == '"')
-        fields.back() += line[++i];
-      else
-        quoted = false;
-    } else if (!quoted && line[i] == '"' && fields.back().empty()) {
-      quoted = true;
-    } else if (!quoted && line[i] == ',') {
-      fields.emplace_back();
-    } else {
-      fields.back() += line[i];
-    }
-  }
-  return quoted ? std::nullopt : std::optional(std::move(fields));
-}
 
 std::vector<StudyRow> parse_study_rows(const std::string& text, const std::string& name) {
   std::vector<StudyRow> rows;

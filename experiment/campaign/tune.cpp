@@ -10,6 +10,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "experiment/files/csv.hpp"
 #include "experiment/optimize/cma_es.hpp"
 #include "experiment/process/signals.hpp"
 #include "experiment/study/run_files.hpp"

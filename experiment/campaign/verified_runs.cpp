@@ -8,6 +8,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "experiment/files/csv.hpp"
 #include "experiment/process/signals.hpp"
 #include "experiment/study/algorithm_table.hpp"
 #include "experiment/study/study_algorithms.hpp"

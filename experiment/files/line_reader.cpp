@@ -2,9 +2,9 @@
 #include "experiment/files/line_reader.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/utf8.hpp"
 
@@ -22,12 +22,12 @@ Word trimmed(Word word) {
   return word;
 }
 
-/// Reads all of a text as a number; `+` may precede it.
+/// Reads all of a text as a number in a closed range; `+` may precede it.
 template <typename Number>
-bool take(std::string_view text, Number& value) {
+std::optional<Number> number_within(std::string_view text, Number low, Number high) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && rest == text.data() + text.size();
+  const auto value = sim::exact_number<Number>(text);
+  return value && *value >= low && *value <= high ? value : std::nullopt;
 }
 
 }  // namespace
@@ -83,14 +83,12 @@ std::vector<Word> LineReader::split_at_spaces() const {
 }
 
 double LineReader::number_of(const Word& word, double low, double high, const char* what) const {
-  double value = 0;
-  if (take(word.text, value) && value >= low && value <= high) return value;
+  if (const auto value = number_within(word.text, low, high)) return *value;
   fail(word, std::string(what) + " must be a number from " + sim::number_text(low) + " to " + sim::number_text(high));
 }
 
 std::int64_t LineReader::whole_of(const Word& word, std::int64_t low, std::int64_t high, const char* what) const {
-  std::int64_t value = 0;
-  if (take(word.text, value) && value >= low && value <= high) return value;
+  if (const auto value = number_within(word.text, low, high)) return *value;
   fail(word, std::string(what) + " must be a whole number from " + std::to_string(low) + " to " + std::to_string(high));
 }
 

@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 
+#include "experiment/files/csv.hpp"
 #include "experiment/score/paired.hpp"
 #include "experiment/study/study_algorithms.hpp"
 #include "experiment/study/study_tables.hpp"

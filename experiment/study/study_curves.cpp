@@ -2,31 +2,18 @@
 #include "experiment/study/study_curves.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <limits>
 #include <optional>
-#include <sstream>
 
+#include "experiment/files/csv.hpp"
 #include "experiment/study/study_results.hpp"
+#include "sim/base/number.hpp"
 
 namespace experiment {
 
 namespace {
-
-std::vector<std::string> fields_of(const std::string& line) {
-  std::vector<std::string> fields;
-  std::istringstream stream(line);
-  for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
-  return fields;
-}
-
-double number_of(const std::string& text) {
-  double value = no_figure;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size() ? value : no_figure;
-}
 
 /// Linear interpolation; nothing before the first or after the last point.
 std::optional<double> error_at(const Curve& curve, double x) {
@@ -44,7 +31,7 @@ Curve read_error_curve(const std::string& path, const std::string& metric, const
   std::ifstream in(path);
   std::string line;
   if (!std::getline(in, line)) return {};
-  const std::vector<std::string> head = fields_of(line);
+  const std::vector<std::string> head = csv_fields(line).value_or(std::vector<std::string>{});
   const auto column = [&](const std::string& name) {
     return static_cast<std::size_t>(std::find(head.begin(), head.end(), name) - head.begin());
   };
@@ -53,9 +40,10 @@ Curve read_error_curve(const std::string& path, const std::string& metric, const
   if (last >= head.size()) return {};
   Curve curve;
   while (std::getline(in, line)) {
-    const std::vector<std::string> fields = fields_of(line);
-    if (fields.size() <= last || fields[name] != metric) continue;
-    const CurvePoint point{number_of(fields[x]), number_of(fields[error])};
+    const auto fields = csv_fields(line);
+    if (!fields || fields->size() <= last || (*fields)[name] != metric) continue;
+    const CurvePoint point{sim::read_number((*fields)[x]).value_or(no_figure),
+                           sim::read_number((*fields)[error]).value_or(no_figure)};
     if (std::isfinite(point.x) && std::isfinite(point.error_m)) curve.push_back(point);
   }
   std::stable_sort(curve.begin(), curve.end(), [](const CurvePoint& a, const CurvePoint& b) { return a.x < b.x; });

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <set>
 
+#include "experiment/files/csv.hpp"
 #include "experiment/results/verdict_json.hpp"
 #include "experiment/run/version.hpp"
 #include "experiment/study/algorithm_table.hpp"

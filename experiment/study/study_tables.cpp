@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "experiment/files/csv.hpp"
 #include "experiment/study/run_files.hpp"
 #include "experiment/study/study_rules.hpp"
 
@@ -36,13 +37,6 @@ RunKind kind_of(const RunRecord& record) {
   const std::size_t comma = record.build.find(", ");
   return {record.version, record.build.substr(0, comma),
           comma == std::string::npos ? "" : record.build.substr(comma + 2)};
-}
-
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
 }
 
 std::string values_text(const StudyConfig& config, const StudyPoint& point) {

@@ -21,9 +21,6 @@ struct RunKind {
 };
 RunKind kind_of(const RunRecord& record);
 
-/// Returns a text as a CSV field.
-std::string csv_field(const std::string& text);
-
 /// Returns the values of a point: `loss = 0.5, g = 1.62`.
 std::string values_text(const StudyConfig& config, const StudyPoint& point);
 

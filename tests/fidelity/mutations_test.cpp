@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "experiment/files/csv.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tests/project_paths.hpp"
@@ -30,14 +31,15 @@ class MutationsOf : public testing::TestWithParam<const char*> {};
 TEST_P(MutationsOf, EachChangeByFivePercentIsSeenByACaseOrIsListedAsWithoutEffect) {
   verification::FidelityFile file = verification::read_fidelity_file(file_of_cases);
   std::erase_if(file.cases, [](const auto& of) { return vehicle_of(of) != GetParam(); });
-  std::ifstream in(test_support::source_path("docs/models/fidelity_coefficients.md"));
-  const std::string page(std::istreambuf_iterator<char>(in), {});
+  std::ifstream in(test_support::source_path("docs/models/fidelity/coefficients.csv"));
+  const std::string table(std::istreambuf_iterator<char>(in), {});
   const auto mutations = verification::mutate_fidelity(file, 0.05, [](const std::string&) {});
   EXPECT_GT(mutations.size(), 20u);
   for (const verification::FidelityMutation& mutation : mutations) {
     EXPECT_EQ(mutation.unseen(), !mutation.without_effect.empty()) << mutation.of.name;
-    // The page is made by `shoal fidelity tests/fidelity/cases.yaml --mutate 0.05 --results docs/models`.
-    EXPECT_THAT(page, HasSubstr("\n| " + mutation.of.name + " | " + sim::number_text(mutation.of.value) + " | "));
+    // The table is made by `shoal fidelity tests/fidelity/cases.yaml --mutate 0.05 --results docs/models`.
+    EXPECT_THAT(table, HasSubstr("\n" + mutation.vehicle + "," + experiment::csv_field(mutation.of.name) + "," +
+                                 sim::number_text(mutation.of.value) + ","));
   }
 }
 
@@ -154,8 +156,10 @@ TEST_F(MutationFiles, ThePageListsWhatIsUnseenWithItsReason) {
   const std::string page = verification::fidelity_mutations_page(mutate(file), 0.05, "cases.yaml");
   EXPECT_THAT(page, HasSubstr("| v | bodies.b.hydrodynamics.inertia_kgm2[0] | 2 | it does not roll |"));
   EXPECT_THAT(page, HasSubstr("| v | bodies.b.hydrodynamics.inertia_kgm2[1] | 3 | a case is missing |"));
-  EXPECT_THAT(page, HasSubstr("| bodies.b.hydrodynamics.mass_kg | 10 | c | c |"));
+  EXPECT_THAT(page, HasSubstr("\n| v | 6 |\n"));
   EXPECT_THAT(page, HasSubstr("## Refused values\n\nNone."));
+  EXPECT_THAT(verification::fidelity_mutations_csv(mutate(file)),
+              HasSubstr("\nv,bodies.b.hydrodynamics.mass_kg,10,c,c\n"));
 }
 
 }  // namespace

@@ -42,6 +42,8 @@ TEST(FidelityCommand, NamesTheCoefficientsThatNoCaseSees) {
   EXPECT_THAT(ended.output, HasSubstr("bluerov2: no case sees bodies.frame.hydrodynamics.hull_height_m"));
   EXPECT_THAT(ended.output, testing::Not(HasSubstr("added_mass")));
   EXPECT_THAT(text_of_file(folder.file("report/fidelity_coefficients.md")), HasSubstr("| a case is missing |"));
+  EXPECT_THAT(text_of_file(folder.file("report/fidelity/coefficients.csv")),
+              HasSubstr("\nbluerov2,bodies.frame.hydrodynamics.hull_height_m,"));
 }
 
 TEST(FidelityCommand, Is2ForWrongUsage) {

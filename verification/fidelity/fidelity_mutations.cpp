@@ -4,12 +4,13 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <optional>
 #include <set>
 
+#include "experiment/files/csv.hpp"
+#include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/model/hydrodynamics_config.hpp"
 #include "sim/ode/physics_fault.hpp"
@@ -21,11 +22,7 @@ namespace {
 
 std::optional<double> number_in(const sim::ConfigNode& node) {
   if (node.kind != sim::ConfigNode::Kind::scalar || node.quoted) return std::nullopt;
-  double value = 0;
-  const char* const last = node.scalar.data() + node.scalar.size();
-  const auto [end, error] = std::from_chars(node.scalar.data(), last, value);
-  if (error != std::errc{} || end != last) return std::nullopt;
-  return value;
+  return sim::exact_number<double>(node.scalar);
 }
 
 /// Adds the numbers of a list: matrices by rows of 3 or 6 with the mirrored number where they must be symmetric.
@@ -223,7 +220,8 @@ std::vector<FidelityMutation> mutate_fidelity(const FidelityFile& file, double s
 std::string fidelity_mutations_page(const std::vector<FidelityMutation>& mutations, double share,
                                     const std::string& cases) {
   const std::string percent = fmt::format("{:g} %", 100 * share);
-  std::string unseen, refused, tables, vehicle;
+  std::string unseen, refused, counts;
+  std::vector<std::pair<std::string, int>> count_of;
   for (const FidelityMutation& mutation : mutations) {
     const std::string value = sim::number_text(mutation.of.value);
     if (mutation.unseen())
@@ -233,29 +231,34 @@ std::string fidelity_mutations_page(const std::vector<FidelityMutation>& mutatio
       if (const std::string& why = mutation.verdicts[side].refused; !why.empty())
         refused += fmt::format("| {} | {} | {} | {}{} | {} |\n", mutation.vehicle, mutation.of.name, value,
                                side == 0 ? "-" : "+", percent, why);
-    if (mutation.vehicle != vehicle)
-      tables += fmt::format("\n## {}\n\n| coefficient | value | -{} | +{} |\n|---|---:|---|---|\n", mutation.vehicle,
-                            percent, percent);
-    vehicle = mutation.vehicle;
-    tables += fmt::format("| {} | {} | {} | {} |\n", mutation.of.name, value, cell_of(mutation.verdicts[0]),
-                          cell_of(mutation.verdicts[1]));
+    if (count_of.empty() || count_of.back().first != mutation.vehicle) count_of.emplace_back(mutation.vehicle, 0);
+    ++count_of.back().second;
   }
+  for (const auto& [vehicle, count] : count_of) counts += fmt::format("| {} | {} |\n", vehicle, count);
   const auto table_or_none = [](const char* head, const std::string& rows) {
     return rows.empty() ? std::string("None.\n") : head + rows;
   };
   return fmt::format(
-             "# Which case sees which coefficient\n\nWritten by `shoal fidelity {} --mutate {:g}`.\n\n"
+             "# Which case detects which coefficient\n\nWritten by `shoal fidelity {} --mutate {:g}`.\n\n"
              "Each number of each vehicle file with [coefficients](coefficients.md) is decreased and increased by {}, "
-             "one at a\ntime; the tables name a case that then misses a bar of [fidelity.md](fidelity.md).  Numbers in "
-             "`hydrodynamics:` and in\nthrusters, fins, buoyancy engines, moving masses and wrenches are changed, "
-             "except "
-             "0 and keys that the file leaves to\ntheir defaults.  Both numbers of a pair of a symmetric matrix change "
-             "together.\n\n## Seen by no case\n\n",
-             cases, share, percent) +
+             "one at a\ntime. [fidelity/coefficients.csv](fidelity/coefficients.csv) has a row for each: the case "
+             "that then misses a bar of\n[fidelity.md](fidelity.md), or `refused`. Numbers in `hydrodynamics:` and "
+             "in thrusters, fins, buoyancy engines, moving\nmasses and wrenches are changed, except 0 and keys that "
+             "the file leaves to their defaults. Both numbers of a pair of a\nsymmetric matrix change together.\n\n"
+             "| vehicle | coefficients |\n|---|---:|\n{}\n## Detected by no case\n\n",
+             cases, share, percent, counts) +
          table_or_none("| vehicle | coefficient | value | why |\n|---|---|---:|---|\n", unseen) +
          "\n## Refused values\n\n" +
-         table_or_none("| vehicle | coefficient | value | change | error |\n|---|---|---:|---:|---|\n", refused) +
-         tables;
+         table_or_none("| vehicle | coefficient | value | change | error |\n|---|---|---:|---:|---|\n", refused);
+}
+
+std::string fidelity_mutations_csv(const std::vector<FidelityMutation>& mutations) {
+  std::string text = "vehicle,coefficient,value,decreased,increased\n";
+  for (const FidelityMutation& mutation : mutations)
+    text +=
+        fmt::format("{},{},{},{},{}\n", mutation.vehicle, experiment::csv_field(mutation.of.name),
+                    sim::number_text(mutation.of.value), cell_of(mutation.verdicts[0]), cell_of(mutation.verdicts[1]));
+  return text;
 }
 
 }  // namespace verification

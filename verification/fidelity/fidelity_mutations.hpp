@@ -57,9 +57,12 @@ bool overrides_coefficient(const FidelityCase& of, const FidelityCoefficient& co
 std::vector<FidelityMutation> mutate_fidelity(const FidelityFile& file, double share,
                                               const std::function<void(const std::string&)>& progress);
 
-/// Returns a page in Markdown: what no case sees, and the table of every vehicle.  `cases`: the file of cases, as in
-/// the command.
+/// Returns a page in Markdown: how many coefficients each vehicle has, and what no case sees.  `cases`: the file of
+/// cases, as in the command.
 std::string fidelity_mutations_page(const std::vector<FidelityMutation>& mutations, double share,
                                     const std::string& cases);
+
+/// Returns a CSV table with a row for each coefficient of each vehicle and the cases that see it change.
+std::string fidelity_mutations_csv(const std::vector<FidelityMutation>& mutations);
 
 }  // namespace verification

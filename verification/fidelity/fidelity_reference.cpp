@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 
+#include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 #include "verification/fidelity/fidelity.hpp"
 
@@ -56,9 +56,8 @@ std::ifstream opened(const std::string& path) {
 std::vector<double> numbers_of(const std::string& path, int line, const std::string& text) {
   std::vector<double> row;
   for (const std::string& cell : cells_of(text)) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value))
+    const double value = sim::exact_number<double>(cell).value_or(std::nan(""));
+    if (!std::isfinite(value))
       fail(path, line, "must have finite numbers, got '" + sim::shortened(sim::printable(cell)) + "'");
     if (std::abs(value) > largest) fail(path, line, "must have numbers from -1e9 to 1e9, got " + sim::shortened(cell));
     row.push_back(value);

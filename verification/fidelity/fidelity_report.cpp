@@ -173,9 +173,11 @@ void write_fidelity_report(const std::string& folder, const std::string& text,
   write(std::filesystem::path(folder) / "fidelity.md", page);
 }
 
-void write_fidelity_mutations(const std::string& folder, const std::string& page) {
-  std::filesystem::create_directories(folder);
-  write(std::filesystem::path(folder) / "fidelity_coefficients.md", page);
+void write_fidelity_mutations(const std::string& folder, const std::string& page, const std::string& table) {
+  const std::filesystem::path at = folder;
+  std::filesystem::create_directories(at / "fidelity");
+  write(at / "fidelity_coefficients.md", page);
+  write(at / "fidelity" / "coefficients.csv", table);
 }
 
 }  // namespace verification

@@ -20,7 +20,7 @@ std::string fidelity_line(const FidelityResult& result, std::size_t number, std:
 void write_fidelity_report(const std::string& folder, const std::string& text,
                            const std::vector<FidelityResult>& results, bool csv);
 
-/// Writes FOLDER/fidelity_coefficients.md.  Throws std::runtime_error.
-void write_fidelity_mutations(const std::string& folder, const std::string& page);
+/// Writes FOLDER/fidelity_coefficients.md and FOLDER/fidelity/coefficients.csv.  Throws std::runtime_error.
+void write_fidelity_mutations(const std::string& folder, const std::string& page, const std::string& table);
 
 }  // namespace verification

@@ -29,7 +29,8 @@ bool mutate(const FidelityArguments& arguments, const verification::FidelityFile
       file, *arguments.mutation, [](const std::string& line) { std::cerr << line << '\n'; });
   if (!arguments.results.empty())
     verification::write_fidelity_mutations(
-        arguments.results, verification::fidelity_mutations_page(mutations, *arguments.mutation, arguments.cases));
+        arguments.results, verification::fidelity_mutations_page(mutations, *arguments.mutation, arguments.cases),
+        verification::fidelity_mutations_csv(mutations));
   bool all_seen = true;
   for (const verification::FidelityMutation& mutation : mutations) {
     if (!mutation.unseen() || !mutation.without_effect.empty()) continue;
@@ -102,8 +103,9 @@ static void add_fidelity_command(CLI::App& app, int& exit_code) {
       ->type_name("SHARE")
       ->check(number_from(1e-4, 0.5));
   command
-      ->add_option("--results", arguments->results,
-                   "directory for the report: fidelity.md and plots; with --mutate also fidelity_coefficients.md")
+      ->add_option(
+          "--results", arguments->results,
+          "directory for the report: fidelity.md and plots; with --mutate also fidelity_coefficients.md and its table")
       ->type_name("DIR");
   command->add_flag("--csv", arguments->csv, "with the report, the states of Shoal as CSV files");
   add_plugin_option(*command);
