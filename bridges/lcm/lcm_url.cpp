@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <charconv>
 #include <cstdlib>
 #include <cstring>
 #include <optional>
@@ -16,6 +15,8 @@
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "sim/base/number.hpp"
 
 namespace bridges {
 namespace {
@@ -48,13 +49,6 @@ UrlParts split_url(const std::string& url) {
   return parts;
 }
 
-std::optional<int> whole_number(std::string_view text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
 LcmEndpoint endpoint_of(const std::string& url, const UrlParts& parts) {
   LcmEndpoint endpoint;
   endpoint.kind = parts.kind;
@@ -67,7 +61,7 @@ LcmEndpoint endpoint_of(const std::string& url, const UrlParts& parts) {
   const auto colon = parts.network.find(':');
   if (colon != 0 && !parts.network.empty()) endpoint.address = parts.network.substr(0, colon);
   if (colon != std::string::npos) {
-    const auto port = whole_number(std::string_view(parts.network).substr(colon + 1));
+    const auto port = sim::exact_number<int>(std::string_view(parts.network).substr(colon + 1));
     if (!port || *port < 1 || *port > 65535)
       refuse_url(url, "the port must be 1 to 65535, got '" + parts.network.substr(colon + 1) + "'");
     endpoint.port = *port;
@@ -78,8 +72,8 @@ LcmEndpoint endpoint_of(const std::string& url, const UrlParts& parts) {
     refuse_url(url, "'" + endpoint.address + "' is not a multicast address (224.0.0.0 to 239.255.255.255)");
   // Read the options.
   for (const auto& [key, value] : parts.options) {
-    if (key == "ttl") endpoint.ttl = whole_number(value).value_or(0);
-    if (key == "recv_buf_size") endpoint.recv_buf_bytes = whole_number(value).value_or(0);
+    if (key == "ttl") endpoint.ttl = sim::exact_number<int>(value).value_or(0);
+    if (key == "recv_buf_size") endpoint.recv_buf_bytes = sim::exact_number<int>(value).value_or(0);
   }
   return endpoint;
 }
@@ -91,7 +85,7 @@ void check_options(const std::string& url, const UrlParts& parts) {
     if (!multicast || (key != "ttl" && key != "recv_buf_size"))
       refuse_url(url, "unknown option '" + key + "'" + (multicast ? "; known options: recv_buf_size, ttl" : ""));
     if (!seen.insert(key).second) refuse_url(url, "option '" + key + "' is given twice");
-    const auto number = whole_number(value);
+    const auto number = sim::exact_number<int>(value);
     if (key == "ttl" && (!number || *number < 0 || *number > 255))
       refuse_url(url, "ttl must be 0 to 255, got '" + value + "'");
     if (key == "recv_buf_size" && (!number || *number < 1))

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cstdio>
 
+#include "sim/base/number.hpp"
+
 namespace devices {
 
 const std::string& NmeaSentence::at(std::size_t i) const {
@@ -13,12 +15,8 @@ const std::string& NmeaSentence::at(std::size_t i) const {
 }
 
 std::optional<int> NmeaSentence::number(std::size_t i, int min, int max) const {
-  const std::string& text = at(i);
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || error != std::errc{} || end != text.data() + text.size()) return {};
-  if (value < min || value > max) return {};
-  return value;
+  const std::optional<int> value = sim::exact_number<int>(at(i));
+  return value && *value >= min && *value <= max ? value : std::nullopt;
 }
 
 unsigned nmea_checksum(std::string_view body) {

@@ -4,7 +4,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -14,6 +13,7 @@
 
 #include "experiment/files/html.hpp"
 #include "experiment/report/chart_axis.hpp"
+#include "sim/base/number.hpp"
 
 namespace experiment {
 
@@ -40,10 +40,8 @@ struct Chart {
 };
 
 std::optional<double> number_of_text(const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size() && std::isfinite(value) ? std::optional(value)
-                                                                                          : std::nullopt;
+  const auto value = sim::exact_number<double>(text);
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 /// Writer of one chart as SVG: a dot for each mean, a bar for its interval, and lines between means.

@@ -4,7 +4,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <set>
 #include <stdexcept>
@@ -13,6 +12,7 @@
 #include "experiment/study/study_algorithms.hpp"
 #include "experiment/study/study_rules.hpp"
 #include "messages/yaml/message_writer.hpp"
+#include "sim/base/number.hpp"
 #include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/shipped_files.hpp"
@@ -165,9 +165,7 @@ sim::LoadedWorld world_of_case(const StudyCase& in_case, sim::LoadOptions option
 constexpr std::size_t max_checked_values = 8;
 
 bool is_number(const std::string& value) {
-  double number = 0;
-  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
-  return error == std::errc() && end == value.data() + value.size();
+  return sim::exact_number<double>(value).has_value();
 }
 
 /// First and last value of a factor and those between up to a number; texts, which may be names of files, all.

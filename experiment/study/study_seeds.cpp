@@ -2,7 +2,6 @@
 #include "experiment/study/study_seeds.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -10,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace experiment {
@@ -31,11 +31,8 @@ struct SeedRange {
 };
 
 std::optional<std::int64_t> whole_seed(std::string_view text) {
-  std::int64_t seed = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
-  const bool good = error == std::errc{} && end == text.data() + text.size() && !text.empty() && text[0] != '-' &&
-                    static_cast<double>(seed) <= max_seed;
-  return good ? std::optional(seed) : std::nullopt;
+  const auto seed = sim::exact_number<std::int64_t>(text);
+  return seed && text[0] != '-' && static_cast<double>(*seed) <= max_seed ? seed : std::nullopt;
 }
 
 /// Parses `1-10`.  Nothing for any other form.

@@ -2,12 +2,12 @@
 #include "experiment/study/study_until.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
 #include "experiment/study/study_results.hpp"
 #include "experiment/study/study_rules.hpp"
+#include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace experiment {
@@ -49,8 +49,9 @@ StudyUntil parse_until(const std::string& text, const std::vector<std::string>& 
   std::string_view right = trimmed(std::string_view(text).substr(less + 1));
   until.relative = right.ends_with('%');
   if (until.relative) right = trimmed(right.substr(0, right.size() - 1));
-  const auto [end, error] = std::from_chars(right.data(), right.data() + right.size(), until.bound);
-  if (error != std::errc{} || end != right.data() + right.size()) throw form();
+  const std::optional<double> bound = sim::exact_number<double>(right);
+  if (!bound) throw form();
+  until.bound = *bound;
   if (!(until.bound > 0) || !std::isfinite(until.bound)) throw wrong("must have a bound > 0");
   if (until.relative && until.figure == passed_figure)
     throw wrong("of the share that passed must have a bound without %, such as 'ci(passed) < 0.1'");

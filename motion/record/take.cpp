@@ -2,12 +2,12 @@
 #include "motion/record/take.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <set>
 #include <stdexcept>
 
 #include "motion/analysis/motion_edit.hpp"
+#include "sim/base/number.hpp"
 #include "sim/base/whole_file.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/utf8.hpp"
@@ -77,21 +77,19 @@ class TakeParser {
   }
 
   double number(std::string_view text, double low, double high, const char* what) const {
-    double value = 0;
-    const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || rest != text.data() + text.size() || !(value >= low && value <= high))
+    const auto value = sim::exact_number<double>(text);
+    if (!value || !(*value >= low && *value <= high))
       fail(std::string(what) + " must be a number from " + sim::number_text(low) + " to " + sim::number_text(high) +
            ", got '" + sim::shortened(sim::printable(sim::in_utf8(text))) + "'");
-    return value;
+    return *value;
   }
 
   std::size_t whole(std::string_view text, std::size_t end, const char* what) const {
-    std::size_t value = 0;
-    const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc{} || rest != text.data() + text.size() || value >= end)
+    const auto value = sim::exact_number<std::size_t>(text);
+    if (!value || *value >= end)
       fail(std::string(what) + " must be a whole number from 0 to " + std::to_string(end - 1) + ", got '" +
            sim::shortened(sim::printable(sim::in_utf8(text))) + "'");
-    return value;
+    return *value;
   }
 
   sim::ConfigNode yaml(std::string_view text) const {

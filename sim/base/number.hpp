@@ -13,8 +13,18 @@ namespace sim {
 // Numbers and their text, with a decimal point in every locale.  The locale of the process is not ours: a Python
 // program may have set one with a comma, which printf, std::to_string(double) and strtod follow.
 
-/// Reads all of a text as a decimal number.  One too small for a double is 0, one too large is infinite.  None for
-/// other text.
+/// Reads all of a text as a number of this type, without blanks or '+'.  nullopt for other text and for a number that
+/// the type cannot hold.
+template <class Number>
+std::optional<Number> exact_number(std::string_view text) {
+  Number value{};
+  const char* const end = text.data() + text.size();
+  const auto [at, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc{} && at == end ? std::optional(value) : std::nullopt;
+}
+
+/// Reads all of a text as a decimal number.  One too small for a double is 0, one too large is infinite.
+/// nullopt for other text.
 inline std::optional<double> read_number(std::string_view text) {
   if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   const char* const end = text.data() + text.size();

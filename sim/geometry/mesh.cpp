@@ -2,7 +2,6 @@
 #include "sim/geometry/mesh.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <limits>
@@ -10,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "sim/base/number.hpp"
 #include "sim/base/whole_file.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/utf8.hpp"
@@ -96,11 +96,9 @@ bool is_ascii_stl(std::string_view bytes) {
 
 double number_from(std::string_view word, const Words& words, const char* what = "number") {
   if (!word.empty() && word[0] == '+') word.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (word.empty() || error != std::errc{} || end != word.data() + word.size())
-    fail_in_line(words, std::string("must have a ") + what + " here");
-  return value;
+  const std::optional<double> value = exact_number<double>(word);
+  if (!value) fail_in_line(words, std::string("must have a ") + what + " here");
+  return *value;
 }
 
 Vector3d checked_vertex(const Vector3d& p) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 
@@ -82,8 +81,8 @@ std::vector<CsvRow> parse_rows(std::string_view text) {
     for (std::size_t i = 0; i < names.size(); ++i) {
       if (columns[i] >= cells.size()) fail(number, "'" + std::string(names[i]) + "' is missing");
       const std::string_view cell = cells[columns[i]];
-      const auto [at, error] = std::from_chars(cell.data(), cell.data() + cell.size(), values[i]);
-      if (error != std::errc{} || at != cell.data() + cell.size() || !std::isfinite(values[i]))
+      values[i] = exact_number<double>(cell).value_or(std::nan(""));
+      if (!std::isfinite(values[i]))
         fail(number, "'" + std::string(names[i]) + "' is not a number, got '" + printable(shortened(cell)) +
                          "'; a grid in a CSV file must have all its points");
     }

@@ -2,11 +2,11 @@
 #include "sim/motion/motion_frames.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <set>
 #include <stdexcept>
 
+#include "sim/base/number.hpp"
 #include "sim/base/whole_file.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/utf8.hpp"
@@ -91,9 +91,9 @@ class FramesParser {
   }
 
   bool read_number(const Cell& cell, double& value) {
-    const char* const end = cell.text.data() + cell.text.size();
-    const auto [rest, error] = std::from_chars(cell.text.data(), end, value);
-    if (error == std::errc{} && rest == end && std::isfinite(value) && std::abs(value) <= 1e6) return true;
+    const std::optional<double> number = exact_number<double>(cell.text);
+    value = number.value_or(0);
+    if (number && std::isfinite(value) && std::abs(value) <= 1e6) return true;
     return fail(cell.column, "must be a number from -1e6 to 1e6, got '" + shortened(printable(cell.text)) + "'");
   }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
 
+#include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/utf8.hpp"
 #include "sim/terrain/terrain.hpp"
@@ -55,12 +55,10 @@ class Words {
     std::string_view word = next();
     if (word.empty()) fail("the file ends before " + what);
     if (word[0] == '+') word.remove_prefix(1);
-    double value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc{} || end != word.data() + word.size())
-      fail(what + " is not a number, got '" + printable(shortened(word)) + "'");
-    if (!std::isfinite(value)) fail(what + " is not finite");
-    return value;
+    const std::optional<double> value = exact_number<double>(word);
+    if (!value) fail(what + " is not a number, got '" + printable(shortened(word)) + "'");
+    if (!std::isfinite(*value)) fail(what + " is not finite");
+    return *value;
   }
 
  private:

@@ -4,11 +4,11 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <set>
 
+#include "sim/base/number.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
@@ -88,13 +88,9 @@ bool is_one_of_count(const ConfigNode& entry, const std::string& name) {
   const std::string& stem = text_at(entry, "name");
   const std::string& count = text_at(entry, "count");
   if (stem.empty() || !name.starts_with(stem) || name.size() == stem.size() || name[stem.size()] == '0') return false;
-  int index = 0, max = 0;
-  const auto whole = [](std::string_view text, int& value) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc{} && end == text.data() + text.size();
-  };
-  return whole(std::string_view(name).substr(stem.size()), index) && whole(count, max) && max > 1 && index >= 1 &&
-         index <= max;
+  const int index = exact_number<int>(std::string_view(name).substr(stem.size())).value_or(0);
+  const int max = exact_number<int>(count).value_or(0);
+  return max > 1 && index >= 1 && index <= max;
 }
 
 void add_override(ConfigNode& vehicle, const std::string& key, const ConfigNode& value, const SourcePlace& place) {

@@ -4,28 +4,22 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
 
+#include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace command_line {
 
 namespace {
 
-/// Returns the input, safe to print on one line.
-/// Returns the whole text as a number; nothing for any other text.
+/// Reads all of a text as a number, perhaps after a '+'.
 template <class Number>
-std::optional<Number> parse_number(const std::string& text) {
-  Number number{};
-  const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
-  const char* end = text.data() + text.size();
-  const auto [at, error] = std::from_chars(begin, end, number);
-  if (error != std::errc{} || at != end) return std::nullopt;
-  return number;
+std::optional<Number> parse_number(std::string_view text) {
+  return sim::exact_number<Number>(text.substr(text.starts_with('+') ? 1 : 0));
 }
 
 CLI::Validator make_check(const std::string& description, const std::function<bool(const std::string&)>& good,
@@ -35,6 +29,25 @@ CLI::Validator make_check(const std::string& description, const std::function<bo
 }
 
 }  // namespace
+
+std::optional<std::vector<double>> numbers_in(std::string_view text, char separator, std::size_t count) {
+  std::vector<double> numbers;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    const auto number = sim::exact_number<double>(text.substr(begin, end - begin));
+    if (!number || !std::isfinite(*number) || numbers.size() == count) return std::nullopt;
+    numbers.push_back(*number);
+    begin = end + 1;
+  }
+  return numbers.size() == count ? std::optional(numbers) : std::nullopt;
+}
+
+std::optional<sim::Vector3d> point_in(std::string_view text) {
+  const auto numbers = numbers_in(text, ',', 3);
+  const auto is_near = [](double number) { return std::abs(number) <= 1e7; };
+  if (!numbers || !std::all_of(numbers->begin(), numbers->end(), is_near)) return std::nullopt;
+  return sim::Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+}
 
 std::string bound_text(double bound) {
   if (std::abs(bound) < 1e6 && std::abs(bound) >= 1e-4) return fmt::format("{:g}", bound);

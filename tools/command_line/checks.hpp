@@ -3,9 +3,13 @@
 
 #include <CLI/App.hpp>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "sim/base/math.hpp"
 
 namespace command_line {
 
@@ -17,6 +21,12 @@ class UsageError : public std::runtime_error {
 
 /// Returns user input for an error message: in quotes, printable, shortened.
 std::string quoted(const std::string& text);
+
+/// Reads `count` finite numbers with a separator between them, such as `4,-3,2.5`; nullopt for any other text.
+std::optional<std::vector<double>> numbers_in(std::string_view text, char separator, std::size_t count);
+
+/// The same for a position in meters, each coordinate within 1e7 m.
+std::optional<sim::Vector3d> point_in(std::string_view text);
 
 /// Validators of option values.  Their descriptions appear in the help: `from 0 to 1e9`, `lcm or none`.
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <charconv>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -14,6 +13,7 @@
 #include "experiment/world_files/world_by_name.hpp"
 #include "messages/yaml/message_writer.hpp"
 #include "sim/base/log.hpp"
+#include "sim/base/number.hpp"
 #include "tools/command_line/name_list.hpp"
 #include "tools/shoal/commands/command_library.hpp"
 #include "tools/shoal/commands/commands.hpp"
@@ -44,11 +44,10 @@ std::vector<double> parse_times(const std::string& text) {
   std::vector<double> times;
   std::istringstream in(text);
   for (std::string part; std::getline(in, part, ',');) {
-    double time_s = 0;
-    const auto [at, error] = std::from_chars(part.data(), part.data() + part.size(), time_s);
-    const bool good = error == std::errc{} && at == part.data() + part.size() && time_s >= 0 && time_s <= 1e9;
-    if (!good) throw CLI::ValidationError("--snapshot-at", "must be times from 0 to 1e9 s, got '" + part + "'");
-    times.push_back(time_s);
+    const auto time_s = sim::exact_number<double>(part);
+    if (!time_s || !(*time_s >= 0 && *time_s <= 1e9))
+      throw CLI::ValidationError("--snapshot-at", "must be times from 0 to 1e9 s, got '" + part + "'");
+    times.push_back(*time_s);
   }
   return times;
 }

@@ -28,6 +28,17 @@ TEST(Number, IsReadWholeOrNotAtAll) {
     EXPECT_EQ(read_number(text), std::nullopt) << text;
 }
 
+TEST(Number, OfATypeIsReadOnlyIfTheTypeHoldsIt) {
+  EXPECT_EQ(sim::exact_number<int>("-12"), -12);
+  EXPECT_EQ(sim::exact_number<std::size_t>("12"), 12u);
+  EXPECT_EQ(sim::exact_number<double>("1.5e-3"), 1.5e-3);
+  EXPECT_EQ(sim::exact_number<std::int64_t>("9223372036854775807"), std::numeric_limits<std::int64_t>::max());
+  for (const char* text : {"", " 1", "1 ", "+1", "1.5", "1x", "x", "2147483648"})
+    EXPECT_EQ(sim::exact_number<int>(text), std::nullopt) << text;
+  EXPECT_EQ(sim::exact_number<std::size_t>("-1"), std::nullopt);
+  EXPECT_EQ(sim::exact_number<double>("1e999"), std::nullopt);
+}
+
 TEST(Number, OutOfTheRangeOfADoubleIsZeroOrInfinite) {
   // The smallest double is 4.9e-324; long double ends at 1e4932.
   for (const char* text : {"1.5e-400", "1e-324", "1e-5000", "-1.5E-400"}) EXPECT_EQ(read_number(text), 0) << text;

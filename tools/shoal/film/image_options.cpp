@@ -5,6 +5,7 @@
 
 #include <charconv>
 
+#include "sim/base/number.hpp"
 #include "sim/image/image.hpp"
 #include "tools/shoal/options/shared_options.hpp"
 
@@ -37,10 +38,8 @@ void add_visibility_option(CLI::App& command, std::string& text) {
 std::optional<double> parse_visibility(const std::string& text) {
   if (text.empty()) return 60;
   if (text == "none") return std::nullopt;
-  double meters = 0;
-  const char* end = text.data() + text.size();
-  const auto [after, error] = std::from_chars(text.data(), end, meters);
-  if (error != std::errc{} || after != end || !(meters >= 0.1 && meters <= 1e6))
+  const auto meters = sim::exact_number<double>(text);
+  if (!meters || !(*meters >= 0.1 && *meters <= 1e6))
     throw CLI::ValidationError("--visibility", "must be from 0.1 to 1e6 m, or none, got '" + text + "'");
   return meters;
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -10,6 +9,7 @@
 #include "experiment/score/map/published_map.hpp"
 #include "experiment/score/map/true_map.hpp"
 #include "sim/base/log.hpp"
+#include "tools/command_line/checks.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/options/output_file.hpp"
 #include "viewer/film/film_source.hpp"
@@ -29,18 +29,11 @@ struct MapArguments {
 
 std::optional<experiment::MapArea> parse_area(const std::string& text) {
   if (text.empty()) return std::nullopt;
-  std::array<double, 4> numbers{};
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const auto [next, error] = std::from_chars(at, end, numbers[i]);
-    const bool good =
-        error == std::errc{} && std::abs(numbers[i]) <= 1e7 && (i == 3 ? next == end : next != end && *next == ',');
-    if (!good)
-      throw CLI::ValidationError("--area", "must be four numbers in meters such as -20,-15,20,15, got '" + text + "'");
-    at = next + 1;
-  }
-  return experiment::MapArea{numbers[0], numbers[1], numbers[2], numbers[3]};
+  const auto numbers = command_line::numbers_in(text, ',', 4);
+  const auto is_near = [](double number) { return std::abs(number) <= 1e7; };
+  if (!numbers || !std::all_of(numbers->begin(), numbers->end(), is_near))
+    throw CLI::ValidationError("--area", "must be four numbers in meters such as -20,-15,20,15, got '" + text + "'");
+  return experiment::MapArea{(*numbers)[0], (*numbers)[1], (*numbers)[2], (*numbers)[3]};
 }
 
 /// `map.png`, or `map_0003.png` for one of several.

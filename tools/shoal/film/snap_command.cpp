@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <charconv>
 #include <chrono>
 #include <iostream>
 #include <memory>
@@ -10,6 +9,7 @@
 #include "sim/image/image_file.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
+#include "tools/command_line/checks.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/film/image_options.hpp"
 #include "tools/shoal/options/output_file.hpp"
@@ -50,31 +50,12 @@ struct SnapView {
   std::optional<viewer::Overview> overview;
 };
 
-using Numbers = std::vector<double>;
-
-/// Parses `count` numbers with `separator` between them.
-Numbers parse_numbers(const char* option, const std::string& text, char separator, std::size_t count,
-                      const char* form) {
-  Numbers numbers;
-  const char* at = text.data();
-  const char* end = at + text.size();
-  while (at <= end) {
-    double number = 0;
-    const auto [next, error] = std::from_chars(at, end, number);
-    if (error != std::errc{} || !std::isfinite(number)) break;
-    numbers.push_back(number);
-    if (next == end && numbers.size() == count) return numbers;
-    if (next == end || *next != separator) break;
-    at = next + 1;
-  }
-  throw CLI::ValidationError(option, std::string("must be ") + form + ", got '" + text + "'");
-}
-
 sim::Vector3d parse_point(const char* option, const std::string& text) {
-  const Numbers numbers = parse_numbers(option, text, ',', 3, "three numbers in meters such as 4,-3,2.5");
-  for (const double number : numbers)
-    if (std::abs(number) > 1e7) throw CLI::ValidationError(option, "must be within 1e7 m, got '" + text + "'");
-  return {numbers[0], numbers[1], numbers[2]};
+  const auto point = command_line::point_in(text);
+  if (!point)
+    throw CLI::ValidationError(
+        option, "must be three numbers in meters such as 4,-3,2.5, each within 1e7 m, got '" + text + "'");
+  return *point;
 }
 
 SnapView free_view(const SnapArguments& arguments, const sim::World& world) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iostream>
@@ -14,6 +13,7 @@
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
+#include "tools/command_line/checks.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/options/output_file.hpp"
 #include "verification/acoustics/acoustic_closed_forms.hpp"
@@ -39,24 +39,10 @@ struct AcousticsArguments {
   std::optional<double> water_depth_m;
 };
 
-/// Parses up to three numbers with `separator` between them; nothing for any other text.
-std::optional<sim::Vector3d> parse_three(const std::string& text, char separator) {
-  sim::Vector3d numbers;
-  const char* at = text.data();
-  const char* end = at + text.size();
-  for (int i = 0; i < 3; ++i) {
-    const auto [next, error] = std::from_chars(at, end, numbers[i]);
-    if (error != std::errc{} || !(std::abs(numbers[i]) <= 1e7)) return std::nullopt;
-    if (i == 2 ? next != end : next == end || *next != separator) return std::nullopt;
-    at = next + 1;
-  }
-  return numbers;
-}
-
 std::vector<double> parse_ranges(const std::string& text) {
-  const auto numbers = parse_three(text, ':');
-  if (!numbers || !((*numbers)[0] > 0) || (*numbers)[1] < (*numbers)[0] || !((*numbers)[2] > 0) ||
-      ((*numbers)[1] - (*numbers)[0]) / (*numbers)[2] > 10000)
+  const auto numbers = command_line::numbers_in(text, ':', 3);
+  if (!numbers || !((*numbers)[0] > 0) || (*numbers)[1] < (*numbers)[0] || (*numbers)[1] > 1e7 ||
+      !((*numbers)[2] > 0) || ((*numbers)[1] - (*numbers)[0]) / (*numbers)[2] > 10000)
     throw CLI::ValidationError("--ranges",
                                "must be from:to:step in meters, 10000 steps at most, such as 100:5000:100, "
                                "got '" +
@@ -70,7 +56,7 @@ std::vector<double> parse_ranges(const std::string& text) {
 /// Parses a position `x,y,z`, a transducer `vehicle/device`, or a vehicle.
 verification::LinkEnd find_end(const char* option, const std::string& text, const sim::World& world) {
   verification::LinkEnd end;
-  if (const auto p_W = parse_three(text, ',')) {
+  if (const auto p_W = command_line::point_in(text)) {
     end.p_W = *p_W;
     return end;
   }

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <charconv>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -9,6 +8,7 @@
 #include "messages/yaml/message_writer.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/world_file/load_world.hpp"
+#include "tools/command_line/checks.hpp"
 #include "tools/shoal/commands/commands.hpp"
 
 namespace tools {
@@ -25,18 +25,10 @@ struct MediumArguments {
 };
 
 sim::Vector3d parse_point(const std::string& text) {
-  sim::Vector3d point;
-  const char* at = text.data();
-  const char* end = at + text.size();
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto [next, error] = std::from_chars(at, end, point[axis]);
-    const bool good =
-        error == std::errc{} && std::abs(point[axis]) <= 1e7 && (axis == 2 ? next == end : next != end && *next == ',');
-    if (!good)
-      throw CLI::ValidationError("--at", "must be three numbers in meters such as 4,-3,-2.5, got '" + text + "'");
-    at = next + 1;
-  }
-  return point;
+  const auto point = command_line::point_in(text);
+  if (!point)
+    throw CLI::ValidationError("--at", "must be three numbers in meters such as 4,-3,-2.5, got '" + text + "'");
+  return *point;
 }
 
 std::string vector_text(const sim::Vector3d& v) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -11,6 +10,7 @@
 #include "devices/signals/led.hpp"
 #include "experiment/world_files/world_by_name.hpp"
 #include "motion/analysis/motion_file.hpp"
+#include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tools/command_line/name_list.hpp"
@@ -80,16 +80,12 @@ sim::JointValues values_of(const EditArguments& arguments, const sim::JointMotio
   sim::JointValues values;
   for (const std::string& text : texts) {
     const std::size_t equals = text.rfind('=');
-    double value = 0;
-    const char* const end = text.data() + text.size();
-    const bool good = equals != std::string::npos && equals > 0 && [&] {
-      const auto [rest, error] = std::from_chars(text.data() + equals + 1, end, value);
-      return error == std::errc{} && rest == end;
-    }();
-    if (!good)
+    const bool has_both = equals != std::string::npos && equals > 0;
+    const auto value = has_both ? sim::exact_number<double>(std::string_view(text).substr(equals + 1)) : std::nullopt;
+    if (!value)
       throw command_line::UsageError("must be JOINT=VALUE, got '" + sim::shortened(sim::printable(text)) + "'");
     const std::string joint = known_joint(text.substr(0, equals), arguments, motion);
-    values.emplace_back(joint, value * motion.unit_of(joint));
+    values.emplace_back(joint, *value * motion.unit_of(joint));
   }
   return values;
 }

@@ -5,11 +5,11 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <set>
 
+#include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace tools {
@@ -41,10 +41,8 @@ std::vector<std::string_view> words_of(std::string_view text) {
 /// Parses a number; nothing for any other text.
 std::optional<double> parse_number(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size() || std::isnan(value)) return std::nullopt;
-  return value;
+  const auto value = sim::exact_number<double>(word);
+  return value && !std::isnan(*value) ? value : std::nullopt;
 }
 
 std::string shown_text(std::string_view text) {
