@@ -13,7 +13,7 @@
 #include <string>
 #include <system_error>
 
-// Ports for tests and benchmarks that run at the same time.  tests/own_ports.py does the same, with the same locks.
+// Ports for tests and measurements that run at the same time.  tests/own_ports.py does the same, with the same locks.
 
 namespace test_support {
 

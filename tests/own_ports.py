@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Ports for tests and benchmarks that run at the same time.  tests/own_ports.hpp does the same, with the same locks.
+"""Ports for tests and measurements that run at the same time.  tests/own_ports.hpp does the same, with the same locks.
 
     python3 own_ports.py [SLOT]
 

@@ -11,7 +11,7 @@
 namespace autonomy {
 
 /// Wandering behavior without a goal: drives ahead, and turns left for a random time when an obstacle is near.  Used
-/// by the rovers of the benchmark; one step for each scan.
+/// by the rovers of `shoal bench`; one step for each scan.
 class Wander {
  public:
   static constexpr double forward_mps = 0.4;

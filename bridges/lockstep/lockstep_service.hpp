@@ -52,7 +52,8 @@ struct LockstepBus {
 };
 
 /// Lockstep protocol on the buses: sends sim.tick, receives sim.ack, and requests and repeats messages on sim.resend
-/// and sim.resent, so that neither a tick nor a message between world and client is lost.  See docs/guides/lockstep.md.
+/// and sim.resent, so that neither a tick nor a message between world and client is lost.  See
+/// docs/develop/lockstep_protocol.md.
 class LockstepService {
  public:
   /// Flushes published messages, and waits for messages up to the given time, or returns earlier.

@@ -36,7 +36,8 @@ namespace bridges {
 ///
 /// The world waits between a tick and its acknowledgement.  Messages are held until the tick that lists them, and
 /// then handled in the order of that list; missing ones are requested.  The behavior of a client is therefore
-/// independent of losses, duplicates and reordering in the network; docs/guides/lockstep.md describes the protocol.
+/// independent of losses, duplicates and reordering in the network; docs/develop/lockstep_protocol.md describes the
+/// protocol.
 /// Payloads that are not valid ticks or replies are ignored; a handler that decodes with shoal::decode() should catch
 /// shoal::MessageError, which otherwise propagates out of next_tick().
 class LockstepClient {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A client in lockstep with the simulator, over a network that may lose messages: docs/guides/lockstep.md, in Java.
+// A client in lockstep with the simulator, over a network that may lose messages, in Java:
+// docs/develop/lockstep_protocol.md.
 // Drives rover1 of worlds/minimal.yaml towards the wall, and stops before it.
 //
 //     lcm-gen --java --jpath types messages/*/*.lcm

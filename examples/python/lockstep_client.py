@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A client in lockstep with the simulator, over a network that may lose messages: docs/guides/lockstep.md, in Python.
+"""A client in lockstep with the simulator, over a network that may lose messages, in Python:
+docs/develop/lockstep_protocol.md.
 
     PYTHONPATH=build/release/python:examples/python python3 examples/python/lockstep_client.py rover1
 

@@ -76,7 +76,7 @@ class AcousticChannel {
   /// Messages lost in shadows: the first `max_shadow_losses`.
   const std::vector<ShadowLoss>& shadow_losses() const { return shadow_losses_; }
   static constexpr std::size_t max_shadow_losses = 100;
-  /// Keys of `acoustics:` whose effects are on: bent sound, leaks into shadows, echo locks.
+  /// Keys of `acoustics:` whose effects are on: refraction, leaks into shadows, echo locks.
   std::vector<std::string> effects() const;
 
   /// Transducers in device order; null where one was removed.

@@ -19,7 +19,7 @@ namespace {
 constexpr double step_s = 0.02;
 constexpr double period_s = 10;
 
-/// A thermocline below the vehicles, in which sound bends.
+/// A thermocline below the vehicles, which refracts sound.
 constexpr const char* warm_above =
     "{profile: [{depth_m: 0, temperature_C: 16}, {depth_m: 25, temperature_C: 15.9}, {depth_m: 40, temperature_C: "
     "10}]}";

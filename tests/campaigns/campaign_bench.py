@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Times of `shoal study plan`, `collect` and the overhead of each run: docs/develop/benchmarks.md.
+"""Times of `shoal study plan`, `collect` and the overhead of each run: docs/develop/performance.md.
 
     campaign_bench.py BIN [--runs 10000] [--overhead 100]
 """

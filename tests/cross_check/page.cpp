@@ -196,8 +196,8 @@ step; MuJoCo's RK4 reduces it where the contact itself does not change.
 
 ## Cost
 
-CPU time of a step at 1 ms in microseconds, the least of three runs, on machine A of the
-[benchmarks](../develop/benchmarks.md), which is shared. It is that of the physics alone, without devices and
+CPU time of a step at 1 ms in microseconds, the least of three runs, on machine A of
+[performance.md](../develop/performance.md), which is shared. It is that of the physics alone, without devices and
 messages. Timings differ from run to run; no test depends on them.
 
 )";

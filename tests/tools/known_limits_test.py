@@ -15,7 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 PAGE = ROOT / "docs/reference/known_limits.md"
 TESTS = ROOT / "tests"
 
-# Rows about other programs, other machines, or figures that a benchmark measures.
+# Rows about other programs, other machines, or figures that are measured, not tested.
 ROWS_WITHOUT_TEST = 8
 
 

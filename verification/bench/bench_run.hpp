@@ -12,7 +12,7 @@
 
 namespace verification {
 
-/// Running benchmark scene: a world and the programs of its vehicles in one process, all messages on the in-process
+/// Running bench scene: a world and the programs of its vehicles in one process, all messages on the in-process
 /// bus.
 class BenchRun {
  public:

@@ -10,7 +10,7 @@
 
 namespace verification {
 
-/// Programs of a benchmark scene, connected to the bus like external ones.
+/// Programs of a bench scene, connected to the bus like external ones.
 class ScenePrograms {
  public:
   virtual ~ScenePrograms() = default;

@@ -24,7 +24,7 @@ namespace experiment {
 ///
 /// The errors of a vehicle, in this order, as far as it has them: east and north of its frame (m), heading (rad, of
 /// wheels), speed scale, turn scale, slow errors of heading and velocity, slow errors of GPS (m), clock (s) and
-/// frequency.  docs/guides/cooperative_navigation.md has the equations.
+/// frequency.  docs/guides/navigation_bound.md has the equations.
 ///
 /// A range refers to the positions at transmission and at arrival, and counts from the time at which it is known.  So
 /// the recursion runs behind: measurements may be added in any order until advance() has passed their times.

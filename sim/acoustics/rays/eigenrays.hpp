@@ -43,7 +43,7 @@ struct RayQuery {
 /// Rays form families by their launch direction and the number of upper and lower turning points or bounces.  Within a
 /// family the range is a smooth function of xi between the values of 1 / c at the knots of the profile; it is tabulated
 /// there once, and each crossing of the wanted range is solved by Newton's method inside a bracket.  All results are
-/// functions of the profile and the query alone.  docs/models/acoustics.md has the equations.
+/// functions of the profile and the query alone.  docs/models/acoustic_rays.md has the equations.
 class Eigenrays {
  public:
   explicit Eigenrays(SoundProfile profile);

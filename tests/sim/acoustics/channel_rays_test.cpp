@@ -7,7 +7,7 @@
 #include "sim/acoustics/channel.hpp"
 #include "tests/sim/acoustics/sea_of_hydrophones.hpp"
 
-// Sound that bends: the figures of a mixed layer over a thermocline, by BELLHOP.
+// Refraction: the figures of a mixed layer over a thermocline, by BELLHOP.
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include "sim/physics/physics_world.hpp"
 #include "tests/sim/physics/gravity.hpp"
 
-/// Worlds in a few lines, for the tests and benchmarks of physics and scene.
+/// Worlds in a few lines, for the tests and measurements of physics and scene.
 namespace small_worlds {
 
 using sim::BodyConfig;

@@ -101,7 +101,7 @@ TEST_F(RandomMotion, StartsInAPoseAndKeepsRangesAndSpeeds) {
 
 using PushPredictionOfMotions = OfTheDog;
 
-/// A few of the motions of push_prediction_bench; docs/develop/benchmarks.md has its command.
+/// A few of the motions of push_prediction_bench; docs/develop/performance.md has its command.
 TEST_F(PushPredictionOfMotions, FindsMostFallsOfPushesThatItHasNotTried) {
   motion::StageOptions stage;
   stage.world = test_support::source_path("worlds/ers7_studio.yaml");

@@ -38,7 +38,7 @@ constexpr Command commands[] = {
     {measure, "tune", "study", "Search for the settings of a study that make a figure best"},
     {measure, "score", "records", "Score a log again, or an estimate that was made elsewhere"},
     {measure, "report", "view", "Make one HTML page of the results of a run or a study"},
-    {measure, "bench", "models", "Measure the speed of this machine on benchmark scenes"},
+    {measure, "bench", "models", "Measure the speed of this machine on standard scenes"},
     {measure, "fidelity", "models", "Compare vehicles with published trajectories"},
     {make, "new", "files", "Write a world, a vehicle or a program to start with"},
     {make, "list", "", "List shipped worlds and vehicles, device types or message types"},

@@ -100,7 +100,7 @@ class PadControls final : public Controls {
       if (device_->read()) return true;
       throw experiment::DriveError("the gamepad is gone");
     }
-    // Events of a file, in their own time.
+    // Events of a file, at their recorded times.
     if (!start_) start_ = now;
     const auto played_us = std::chrono::duration_cast<std::chrono::microseconds>(now - *start_).count();
     for (; next_ < events_.size() && events_[next_].time_us - events_.front().time_us <= played_us; ++next_)
@@ -329,7 +329,7 @@ static void add_drive_command(CLI::App& app, int& exit_code) {
   CLI::Option* gamepad =
       command->add_option("--gamepad", arguments->gamepad, "gamepad instead of keys: /dev/input/eventX")
           ->type_name("DEVICE");
-  command->add_option("--events", arguments->events, "play a file of the events of a gamepad, in their own time")
+  command->add_option("--events", arguments->events, "play a file of the events of a gamepad, at their recorded times")
       ->type_name("FILE")
       ->excludes(gamepad);
   // Connection.

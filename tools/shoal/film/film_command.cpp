@@ -95,7 +95,7 @@ void add_film_options(CLI::App& command, FilmArguments& arguments) {
       ->type_name("N")
       ->check(whole_from(1, 240))
       ->capture_default_str();
-  command.add_option("--size", arguments.size, "of the film in pixels")
+  command.add_option("--size", arguments.size, "frame size in pixels")
       ->type_name("WIDTHxHEIGHT")
       ->capture_default_str();
   command.add_option("--fov", arguments.fov_deg, "horizontal field of view, degrees")
@@ -127,7 +127,7 @@ void add_clip_options(CLI::App& command, viewer::ClipOptions& clips) {
       ->check(number_from(0, 1e6))
       ->capture_default_str()
       ->needs(directory);
-  command.add_option("--after", clips.after_s, "and after each event, s")
+  command.add_option("--after", clips.after_s, "time after each event, s")
       ->type_name("S")
       ->check(number_from(0, 1e6))
       ->capture_default_str()

@@ -62,7 +62,7 @@ viewer::OverlayChoice parse_overlay_option(const std::string& text) {
 void add_shapes_option(CLI::App& command, std::string& text) {
   command
       .add_option("--shapes", text,
-                  "of the bodies: drawn, collision (with the edges of the parts that collide) or wire (only edges)")
+                  "how bodies look: drawn, collision (with the edges of the parts that collide) or wire (only edges)")
       ->type_name("KIND")
       ->check(one_of({"drawn", "collision", "wire"}).description(""))
       ->capture_default_str();

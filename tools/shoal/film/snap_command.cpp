@@ -221,7 +221,7 @@ void add_view_options(CLI::App& command, SnapArguments& arguments) {
       command.add_option("--look", arguments.look, "point that the camera looks at, m")->type_name("X,Y,Z");
   CLI::Option* fov =
       command.add_option("--fov", arguments.fov_deg, "horizontal field of view, degrees")->type_name("DEG");
-  CLI::Option* size = command.add_option("--size", arguments.size, "of the image in pixels")->type_name("WIDTHxHEIGHT");
+  CLI::Option* size = command.add_option("--size", arguments.size, "image size in pixels")->type_name("WIDTHxHEIGHT");
   eye->needs(look);
   look->needs(eye);
   fov->check(number_from(1, 170))->capture_default_str();
@@ -265,8 +265,7 @@ static void add_snap_command(CLI::App& app, int& exit_code) {
       command
           ->add_option("--every", arguments->every_s, "interval of further images in seconds: NAME_0000.png and so on")
           ->type_name("S");
-  CLI::Option* until =
-      command->add_option("--until", arguments->until_s, "time of the last of them, s")->type_name("S");
+  CLI::Option* until = command->add_option("--until", arguments->until_s, "time of the last image, s")->type_name("S");
   every->check(number_from(1e-6, 1e9))->needs(until);
   until->check(number_from(0, 1e9))->needs(every);
   // View and world.

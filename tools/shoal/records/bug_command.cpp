@@ -55,7 +55,7 @@ static void add_bug_command(CLI::App& app, int& exit_code) {
       *command,
       {{"shoal bug results/coop_land --record coop.lcm", "shoal bug results/coop_land --out coop_land_bug.tar.gz"},
        {{0, "the archive is written"}, {2, "wrong usage"}, {4, "the folder, the record or the archive cannot be used"}},
-       {"docs/guides/scoring.md says what is inside."}});
+       {"docs/guides/reports.md says what is inside."}});
   command->callback([options, &exit_code] { exit_code = pack(*options); });
 }
 

@@ -52,7 +52,7 @@ static void add_score_command(CLI::App& app, int& exit_code) {
       ->type_name("DIR");
   command
       ->add_option("--mrclam", options.mrclam,
-                   "folder for truth, odometry and sightings in the form of the UTIAS MR.CLAM data sets")
+                   "folder for truth, odometry and measurements in the form of the UTIAS MR.CLAM data sets")
       ->type_name("DIR");
   add_set_option(*command, options.load.sets);
   add_allow_path_option(*command, options.load);

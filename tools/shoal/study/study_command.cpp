@@ -188,7 +188,7 @@ static void add_study_command(CLI::App& app, int& exit_code) {
   arguments->options.threads = 0;
   // Options.
   CLI::Option* log_level = add_log_level_option(*command, "warn");
-  CLI::Option* path = command->add_option("STUDY", arguments->path, "study file, see docs/guides/scoring.md");
+  CLI::Option* path = command->add_option("STUDY", arguments->path, "study file, see docs/guides/studies.md");
   add_change_options(*command, arguments->seeds, arguments->changes, arguments->options.output);
   add_jobs_options(*command, arguments->options);
   add_algorithm_option(*command, arguments->changes);

@@ -185,7 +185,7 @@ void add_study_collect_command(CLI::App& study_command, int& exit_code) {
   command->add_option("DIR", arguments->directory, "folder with the manifest of `shoal study plan`")->required();
   command->add_flag(
       "--show", arguments->show,
-      "execute the runs with the greatest and smallest figures again, each with its page in three dimensions");
+      "execute the runs with the largest and smallest figures again, each with its page in three dimensions");
   command->add_flag("--quiet", arguments->quiet, "no message about the files");
   add_algorithm_option(*command, arguments->changes);
   add_allow_path_option(*command, arguments->load);

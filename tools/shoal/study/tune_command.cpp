@@ -120,7 +120,8 @@ static void add_tune_command(CLI::App& app, int& exit_code) {
   command->add_option("--search-seed", options.seed, "seed of the search")
       ->type_name("N")
       ->check(whole_from(0, 9007199254740992));
-  command->add_option("--seeds", arguments->seeds, "of the runs, instead of those of the study")->type_name("SEEDS");
+  command->add_option("--seeds", arguments->seeds, "seeds of the runs, instead of those of the study")
+      ->type_name("SEEDS");
   command->add_option("--duration", arguments->changes.duration_s, "simulated seconds of each run")
       ->type_name("S")
       ->check(number_from(1e-6, 1e9));

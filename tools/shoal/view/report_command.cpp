@@ -150,7 +150,7 @@ static void add_report_command(CLI::App& app, int& exit_code) {
         "shoal report results/seed1 results/seed2 --output comparison.html"},
        {{0, "success"}, {2, "wrong usage"}, {4, "a file cannot be read or written"}},
        {"Each page is one file that needs no network. That in three dimensions has at most 20 MB; of a longer run it "
-        "has fewer poses.  See docs/guides/scoring.md."}});
+        "has fewer poses.  See docs/guides/reports.md."}});
   command->callback([arguments, &exit_code] { exit_code = report(*arguments); });
 }
 
