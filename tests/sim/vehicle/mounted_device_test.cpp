@@ -1,51 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the framework does around every device: watchdog, latencies, losses, faults, power.
+#include "sim/vehicle/mounted_device.hpp"
 
 #include <gmock/gmock.h>
 
 #include <bit>
 
-#include "shoal/joint_command_t.hpp"
 #include "shoal/joint_state_t.hpp"
-#include "shoal/twist_command_t.hpp"
-#include "sim/vehicle/mounted_device.hpp"
 #include "sim/world/world_editor.hpp"
+#include "tests/devices/arm_rover.hpp"
 #include "tests/devices/joint/arm_fixture.hpp"
 
 namespace {
 
-using sim::FaultKind;
-
-std::string motor(const std::string& more = "") {
-  return "        - {name: motor, type: joint_motor, joint: shoulder, max_velocity: 5, max_force: 50" + more + "}\n";
-}
-
-std::string joints(const std::string& more) {
-  return "        - {name: joints, type: joint_state" + more + "}\n";
-}
-
-void turn(test::TestWorld& test, double velocity) {
-  shoal::joint_command_t command{};
-  command.velocity = velocity;
-  test.send("a1.motor.cmd", command);
-}
-
-const sim::Joint& shoulder(const test::TestWorld& test) {
-  return test.world.find_vehicle("a1")->joint("shoulder");
-}
+using namespace arm_rover;
 
 sim::VehicleSystems& systems(test::TestWorld& test) {
   return test.world.vehicles().front()->systems();
-}
-
-/// The motor's target before each step.
-std::vector<double> targets(test::TestWorld& test, int steps) {
-  std::vector<double> all;
-  for (int i = 0; i < steps; ++i) {
-    test.world.step();
-    all.push_back(shoulder(test).motor_velocity());
-  }
-  return all;
 }
 
 TEST(Watchdog, ACommandIsGoodForExactlyItsTime) {
@@ -197,57 +168,6 @@ TEST(Dropout, LosesItsShareOfReportsAndCommands) {
   EXPECT_NEAR(static_cast<double>(reports.take_all().size()) / 5000.0, 0.8, 4 * std::sqrt(0.2 * 0.8 / 5000));
 }
 
-TEST(ActuatorFault, DeadGivesNoForceAndComesBackWithItsCommand) {
-  test::TestWorld test(test::arm_world(motor(), 0));
-  turn(test, 1);
-  test.run_for(0.1);
-  test.world.editor().set_fault("a1/motor", {.kind = FaultKind::dead});
-  test.run_for(0.1);
-  EXPECT_EQ(shoulder(test).motor_max_force(), 0);
-  test.world.editor().clear_faults("a1/motor");
-  test.run_for(0.01);
-  EXPECT_EQ(shoulder(test).motor_max_force(), 50);
-  EXPECT_EQ(shoulder(test).motor_velocity(), 1);
-}
-
-TEST(ActuatorFault, PartialFaultsMultiply) {
-  test::TestWorld test(test::arm_world(motor(), 0));
-  test.world.editor().set_fault("a1/motor", {.kind = FaultKind::partial, .effectiveness = 0.4});
-  test.run_for(0.01);
-  EXPECT_EQ(shoulder(test).motor_max_force(), 0.4 * 50);
-  test.world.editor().set_fault("a1/motor", {.kind = FaultKind::dead});
-  test.run_for(0.01);
-  EXPECT_EQ(shoulder(test).motor_max_force(), 0);
-}
-
-TEST(ActuatorFault, StuckKeepsItsLastCommandWhateverComes) {
-  test::TestWorld test(test::arm_world(motor(", watchdog_s: 0.05"), 0));
-  turn(test, 1);
-  test.run_for(0.02);
-  test.world.editor().set_fault("a1/motor", {.kind = FaultKind::stuck});
-  turn(test, -2);
-  for (const double velocity : targets(test, 200)) ASSERT_EQ(velocity, 1);
-}
-
-TEST(ActuatorFault, SilentReceivesNothingSoThatItsWatchdogStopsIt) {
-  test::TestWorld test(test::arm_world(motor(", watchdog_s: 0.05"), 0));
-  turn(test, 1);
-  test.run_for(0.02);
-  test.world.editor().set_fault("a1/motor", {.kind = FaultKind::silent});
-  turn(test, -2);
-  const auto velocities = targets(test, 100);
-  EXPECT_EQ(velocities.front(), 1);
-  EXPECT_EQ(velocities.back(), 0);
-}
-
-TEST(ActuatorFault, DegradedLosesCommands) {
-  test::TestWorld test(test::arm_world(motor(), 0));
-  test.world.editor().set_fault("a1/motor", {.kind = FaultKind::degraded, .dropout = 1});
-  turn(test, 1);
-  test.run_for(0.02);
-  EXPECT_EQ(shoulder(test).motor_velocity(), 0);
-}
-
 TEST(Power, WithoutItActuatorsAreFreeAndSensorsSilent) {
   test::TestWorld test(test::arm_world(motor() + joints(", rate_hz: 100"), 0));
   test::Listener<shoal::joint_state_t> reports(test, "a1.joints");
@@ -278,72 +198,5 @@ TEST(Power, ACommandOnItsWayWhenItGoesIsLost) {
   test.run_for(0.1);
   EXPECT_EQ(shoulder(test).motor_velocity(), 0);
 }
-
-/// A vehicle for any type of device: what the required keys need, by their names.
-std::string device_of(const sim::DeviceType& type) {
-  std::vector<sim::ParamInfo> table;
-  sim::ParamReader in(table);
-  type.make_params()->read(in);
-  std::string keys;
-  for (const sim::ParamInfo& info : table) {
-    if (!info.required) continue;
-    const bool list = info.type.find("list") != std::string::npos;
-    const bool other = info.key.find("right") != std::string::npos || info.key == "follows";
-    const std::string name = other ? "right" : "left";
-    keys += ", " + info.key + ": " + (list ? "[" + name + "]" : name);
-  }
-  return "        - {name: device, type: " + type.name + keys + "}\n";
-}
-
-/// A rover with the device; its chassis is kinematic when the device asks for that.
-std::string rover_for(const sim::DeviceType& type) {
-  std::string world = test::rover_world(device_of(type));
-  const std::string chassis = "- name: chassis\n";
-  if (type.name == "naive_drive")
-    world.replace(world.find(chassis), chassis.size(), chassis + "          kinematic: true\n");
-  if (type.name == "noise_source") world += "medium: {water: {surface_m: -10}}\n";
-  return world;
-}
-
-class EveryActuator : public testing::TestWithParam<const sim::DeviceType*> {};
-
-TEST_P(EveryActuator, GoesToItsSafeStatesAndWithoutEffectivenessGivesNoForce) {
-  const sim::DeviceType& type = *GetParam();
-  for (const sim::SafeState safe : type.safe_states) {
-    test::TestWorld test(rover_for(type));
-    auto* actuator = const_cast<sim::Actuator*>(test.world.find_vehicle("r1")->find_device("device")->actuator());
-    ASSERT_NE(actuator, nullptr);
-    test.run_for(0.02);
-    EXPECT_NO_THROW(actuator->make_safe(safe));
-    test.run_for(0.02);
-    EXPECT_GE(actuator->power_W(), 0);
-    test.world.editor().set_fault("r1/device", {.kind = FaultKind::dead});
-    test.run_for(0.02);
-    for (const auto& [name, joint] : test.world.find_vehicle("r1")->joints())
-      EXPECT_EQ(joint->motor_max_force(), 0) << name;
-  }
-}
-
-TEST_P(EveryActuator, SaysWhatItIsInFull) {
-  const sim::DeviceType& type = *GetParam();
-  EXPECT_FALSE(type.meaning.empty());
-  EXPECT_TRUE(type.meaning.ends_with(".")) << type.meaning;
-  EXPECT_TRUE(type.takes_commands() || type.always_on) << "only a linkage takes none";
-  EXPECT_TRUE(type.changeable) << "what can be tuned can be tuned while it runs";
-  std::vector<sim::ParamInfo> table;
-  sim::ParamReader in(table);
-  type.make_params()->read(in);
-  for (const sim::ParamInfo& info : table) EXPECT_FALSE(info.meaning.empty()) << info.key;
-}
-
-std::vector<const sim::DeviceType*> actuators() {
-  std::vector<const sim::DeviceType*> all;
-  for (const sim::DeviceType* type : sim::DeviceRegistry::instance().all())
-    if (type->is_actuator()) all.push_back(type);
-  return all;
-}
-
-INSTANTIATE_TEST_SUITE_P(All, EveryActuator, testing::ValuesIn(actuators()),
-                         [](const auto& test) { return test.param->name; });
 
 }  // namespace

@@ -1,10 +1,71 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What faults do to the measurements of a sensor, on paper and in its statistics.
+#include "sim/device/fault.hpp"
+
+#include <gmock/gmock.h>
+
 #include "shoal/imu_t.hpp"
+#include "sim/vehicle/mounted_device.hpp"
 #include "sim/world/world_editor.hpp"
+#include "tests/devices/arm_rover.hpp"
+#include "tests/devices/joint/arm_fixture.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
+
+using namespace arm_rover;
+
+using sim::FaultKind;
+
+TEST(ActuatorFault, DeadGivesNoForceAndComesBackWithItsCommand) {
+  test::TestWorld test(test::arm_world(motor(), 0));
+  turn(test, 1);
+  test.run_for(0.1);
+  test.world.editor().set_fault("a1/motor", {.kind = FaultKind::dead});
+  test.run_for(0.1);
+  EXPECT_EQ(shoulder(test).motor_max_force(), 0);
+  test.world.editor().clear_faults("a1/motor");
+  test.run_for(0.01);
+  EXPECT_EQ(shoulder(test).motor_max_force(), 50);
+  EXPECT_EQ(shoulder(test).motor_velocity(), 1);
+}
+
+TEST(ActuatorFault, PartialFaultsMultiply) {
+  test::TestWorld test(test::arm_world(motor(), 0));
+  test.world.editor().set_fault("a1/motor", {.kind = FaultKind::partial, .effectiveness = 0.4});
+  test.run_for(0.01);
+  EXPECT_EQ(shoulder(test).motor_max_force(), 0.4 * 50);
+  test.world.editor().set_fault("a1/motor", {.kind = FaultKind::dead});
+  test.run_for(0.01);
+  EXPECT_EQ(shoulder(test).motor_max_force(), 0);
+}
+
+TEST(ActuatorFault, StuckKeepsItsLastCommandWhateverComes) {
+  test::TestWorld test(test::arm_world(motor(", watchdog_s: 0.05"), 0));
+  turn(test, 1);
+  test.run_for(0.02);
+  test.world.editor().set_fault("a1/motor", {.kind = FaultKind::stuck});
+  turn(test, -2);
+  for (const double velocity : targets(test, 200)) ASSERT_EQ(velocity, 1);
+}
+
+TEST(ActuatorFault, SilentReceivesNothingSoThatItsWatchdogStopsIt) {
+  test::TestWorld test(test::arm_world(motor(", watchdog_s: 0.05"), 0));
+  turn(test, 1);
+  test.run_for(0.02);
+  test.world.editor().set_fault("a1/motor", {.kind = FaultKind::silent});
+  turn(test, -2);
+  const auto velocities = targets(test, 100);
+  EXPECT_EQ(velocities.front(), 1);
+  EXPECT_EQ(velocities.back(), 0);
+}
+
+TEST(ActuatorFault, DegradedLosesCommands) {
+  test::TestWorld test(test::arm_world(motor(), 0));
+  test.world.editor().set_fault("a1/motor", {.kind = FaultKind::degraded, .dropout = 1});
+  turn(test, 1);
+  test.run_for(0.02);
+  EXPECT_EQ(shoulder(test).motor_velocity(), 0);
+}
 
 const char* errors =
     ", gyro_noise: {gaussian_std: 0.02, gauss_markov_std: 0.01}, accel_noise: {gaussian_std: 0.1}, "
@@ -15,6 +76,7 @@ const char* errors =
 struct Stretches {
   std::vector<shoal::imu_t> before, during, after;
 };
+
 Stretches run(const std::optional<sim::FaultConfig>& fault, double stretch_s = 1, const std::string& noise = errors) {
   test::TestWorld test(test::box_world("        - {name: imu, type: imu, rate_hz: 100, phase_s: 0" + noise + "}\n",
                                        "{step_s: 0.01, gravity_mps2: 0}"));
