@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Names and notes of other programs that are not text in UTF-8.
+#include "motion/formats/motion_parts.hpp"
 
 #include <gmock/gmock.h>
 
