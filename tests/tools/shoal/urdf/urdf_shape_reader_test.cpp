@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What other readers of URDF overlook: it gets a note, and the robot is imported.
+#include "tools/shoal/urdf/urdf_shape_reader.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 
 #include "tests/scratch_folder.hpp"
@@ -12,11 +13,10 @@
 
 namespace {
 
-using sim::Vector3d;
+using test::import_error;
 using test::imported;
 using test::link_text;
 using test::notes_of;
-using test::pair_text;
 using test::robot_text;
 using testing::HasSubstr;
 
@@ -25,16 +25,6 @@ const std::string unit_box = "<geometry><box size=\"1 1 1\"/></geometry>";
 /// Robot of one link with a shape on line 3.
 tools::ImportedVehicle with_shape(const std::string& kind, const std::string& content) {
   return imported(robot_text(link_text("a", "\n<" + kind + ">" + content + "</" + kind + ">\n")));
-}
-
-tools::ImportedVehicle with_limit(const std::string& limit) {
-  return imported(pair_text("revolute", "<limit " + limit + "/>"));
-}
-
-std::string joint_between(const std::string& name, const std::string& type, const std::string& parent,
-                          const std::string& child, const std::string& more = "") {
-  return "<joint name=\"" + name + "\" type=\"" + type + "\"><parent link=\"" + parent + "\"/><child link=\"" + child +
-         "\"/>" + more + "</joint>\n";
 }
 
 TEST(DecorativeFault, AShapeWithoutVolumeIsLeftOut) {
@@ -51,11 +41,6 @@ TEST(DecorativeFault, AShapeWithoutVolumeIsLeftOut) {
   expect_left_out("<sphere radius=\"1e-7\"/>", "sphere");
   expect_left_out("<cylinder radius=\"0.1\" length=\"0\"/>", "cylinder");
   expect_left_out("<mesh filename=\"m.stl\" scale=\"1 0 1\"/>", "mesh");
-}
-
-TEST(DecorativeFault, AttributesThatAreNotImportedAreNoted) {
-  EXPECT_EQ(notes_of(with_limit("lower=\"-1\" upper=\"1\" effort=\"5\" velocity=\"2\" acceleration=\"3\"")),
-            "r.urdf:4: joint 'j': 'acceleration' of <limit> is not imported\n");
 }
 
 TEST(DecorativeFault, AnOriginMayHaveAQuaternion) {
@@ -121,85 +106,6 @@ TEST(DecorativeFault, AnUnknownMaterialOrATextureGivesNoColor) {
   EXPECT_EQ(notes_of(texture), "r.urdf:3: the texture of a material is not imported\n");
 }
 
-TEST(DecorativeFault, ALimitThatIsNoneGivesNoServo) {
-  for (const std::string keys : {"effort=\"-1\" velocity=\"1\"", "effort=\"1\" velocity=\"-1\"",
-                                 "effort=\"1e-300\" velocity=\"1\"", "velocity=\"1\"", "effort=\"1\""}) {
-    const tools::ImportedVehicle vehicle = with_limit("lower=\"0\" upper=\"1\" " + keys);
-    EXPECT_FALSE(vehicle.joints.at(0).has_servo());
-    EXPECT_EQ(vehicle.joints[0].high_stop, 1);
-    EXPECT_THAT(notes_of(vehicle), HasSubstr("of <limit> must be > 0, got ")) << keys;
-    EXPECT_THAT(notes_of(vehicle), HasSubstr("it is taken as unknown\n")) << keys;
-  }
-}
-
-TEST(DecorativeFault, AJointWithoutLimitMovesWithoutBounds) {
-  const tools::ImportedVehicle vehicle = imported(pair_text("prismatic"));
-  EXPECT_FALSE(vehicle.joints.at(0).low_stop || vehicle.joints[0].high_stop || vehicle.joints[0].has_servo());
-  EXPECT_THAT(notes_of(vehicle), HasSubstr("r.urdf:4: joint 'j' has no <limit>: it moves without bounds\n"));
-}
-
-TEST(DecorativeFault, ALimitWithoutBoundsIsLimited) {
-  const tools::ImportedVehicle vehicle =
-      with_limit("lower=\"-1e+16\" upper=\"inf\" effort=\"1.7e308\" velocity=\"1e10\"");
-  EXPECT_EQ(vehicle.joints.at(0).low_stop, std::nullopt);
-  EXPECT_EQ(vehicle.joints[0].high_stop, std::nullopt);
-  EXPECT_EQ(vehicle.joints[0].max_effort, 1e9);
-  EXPECT_EQ(vehicle.joints[0].max_velocity, 1e9);
-}
-
-TEST(DecorativeFault, AFloatingJointOfTheRootLeavesTheVehicleFree) {
-  for (const std::string type : {"floating", "planar"})
-    for (const std::string root : {"world", "odom"}) {
-      const std::string urdf = robot_text("<link name=\"" + root + "\"/>\n" + link_text("b") + link_text("c") +
-                                          joint_between("f", type, root, "b", "<origin xyz=\"0 0 2\"/>") +
-                                          joint_between("j", "continuous", "b", "c"));
-      const tools::ImportedVehicle vehicle = imported(urdf);
-      ASSERT_EQ(vehicle.bodies.size(), 2u);
-      EXPECT_EQ(vehicle.bodies[0].X_VB.translation(), Vector3d(0, 0, 2));
-      ASSERT_EQ(vehicle.joints.size(), 1u);
-      EXPECT_EQ(vehicle.joints[0].first + " " + vehicle.joints[0].second, "b c");
-      EXPECT_THAT(notes_of(vehicle),
-                  HasSubstr("r.urdf:5: joint 'f' of type '" + type + "' is not imported: the vehicle moves freely\n"));
-      const tools::ImportedVehicle fixed = imported(urdf, tools::Base::fixed);
-      EXPECT_EQ(fixed.joints.at(1).first + " " + fixed.joints[1].second, "b world");
-    }
-}
-
-TEST(DecorativeFault, ALinkThatNothingConnectsIsLeftOut) {
-  const tools::ImportedVehicle vehicle = imported(
-      robot_text(link_text("spare") + link_text("tip") + joint_between("t", "continuous", "spare", "tip") +
-                 link_text("a") + link_text("b") + link_text("c") + joint_between("j", "continuous", "a", "b") +
-                 joint_between("k", "continuous", "b", "c") + "<link name=\"frame\"/>\n"));
-  ASSERT_EQ(vehicle.bodies.size(), 3u);
-  EXPECT_EQ(vehicle.bodies[0].name, "a");
-  EXPECT_EQ(vehicle.joints.size(), 2u);
-  EXPECT_THAT(notes_of(vehicle),
-              HasSubstr("r.urdf:2: link 'spare' is not connected to 'a': neither it nor what it carries is imported\n"
-                        "r.urdf:10: link 'frame' is not connected to 'a': neither it nor what it carries is"));
-}
-
-TEST(DecorativeFault, ALinkOfTwoParentsIsRefusedAlsoWhereNothingConnectsIt) {
-  const std::string urdf =
-      robot_text(link_text("a") + link_text("b") + link_text("c") + joint_between("j", "continuous", "a", "b") +
-                 joint_between("k", "continuous", "b", "c") + link_text("spare") + link_text("tip") +
-                 joint_between("s", "continuous", "spare", "tip") + joint_between("t", "continuous", "spare", "tip"));
-  EXPECT_EQ(test::import_error(urdf),
-            "r.urdf:10: joint 't': link 'tip' already has the parent joint 's': a URDF is a tree");
-}
-
-TEST(DecorativeFault, AnEndWithoutMassAndShapesIsLeftOut) {
-  // A frame, and one behind it.  A mass of 1e-10 kg is none.
-  const tools::ImportedVehicle vehicle = imported(
-      robot_text(link_text("a") +
-                 "<link name=\"b\"><inertial><mass value=\"1e-10\"/><inertia ixx=\"0\" iyy=\"0\" izz=\"0\"/></inertial>"
-                 "</link>\n<link name=\"c\"/>\n" +
-                 joint_between("ab", "continuous", "a", "b") + joint_between("bc", "continuous", "b", "c")));
-  EXPECT_EQ(vehicle.bodies.size(), 1u);
-  EXPECT_TRUE(vehicle.joints.empty());
-  EXPECT_THAT(notes_of(vehicle), HasSubstr("r.urdf:3: body 'b' has neither mass nor shapes and carries nothing: it and "
-                                           "its joint are not imported\n"));
-}
-
 TEST(DecorativeFault, AnEmptyMeshOrAVisualOneThatIsMissingIsLeftOut) {
   const test_support::ScratchFolder folder;
   std::ofstream(folder.file("empty.STL")) << std::string(80, ' ');
@@ -244,24 +150,23 @@ TEST(DecorativeFault, EachVisualOfADamagedMeshGetsTheNoteOfTheFirst) {
   EXPECT_EQ(vehicle.notes[1].place.line, 4);
 }
 
-TEST(DecorativeFault, ARobotWithoutNameGetsThatOfTheFile) {
-  const tools::ImportedVehicle vehicle = imported("<robot>\n" + link_text("a") + "</robot>");
-  EXPECT_EQ(vehicle.name, "r");
-  EXPECT_EQ(notes_of(vehicle), "r.urdf:1: the robot has no name: it gets that of the file\n");
+std::string shape_error(const std::string& geometry) {
+  return import_error(robot_text(link_text("a", "<collision><geometry>" + geometry + "</geometry></collision>")));
 }
 
-TEST(DecorativeFault, TheWorldNeedsNoLink) {
-  const tools::ImportedVehicle vehicle =
-      imported(robot_text(link_text("a") + joint_between("weld", "fixed", "world", "a")));
-  EXPECT_EQ(vehicle.joints.at(0).first + " " + vehicle.joints[0].second, "a world");
-  EXPECT_EQ(notes_of(vehicle), "");
-}
-
-TEST(DecorativeFault, UnknownElementsAreNoted) {
-  EXPECT_EQ(notes_of(imported(robot_text(link_text("a", "<sensor/>") +
-                                         "<gazebo reference=\"a\"><mu1>1</mu1></gazebo>\n<actuator/>\n"))),
-            "r.urdf:3: <gazebo> is not imported\nr.urdf:4: <actuator> is not imported\n"
-            "r.urdf:2: link 'a': <sensor> is not imported\n");
+TEST(UrdfReader, NamesLineRuleAndValueOfAWrongShape) {
+  EXPECT_EQ(shape_error("<sphere radius=\"-1\"/>"), "r.urdf:2: link 'a': 'radius' must be > 0, got -1");
+  EXPECT_EQ(shape_error("<sphere radius=\"1e8\"/>"),
+            "r.urdf:2: link 'a': 'radius' must be at most 1e7 m, got 100000000");
+  EXPECT_EQ(shape_error("<sphere/>"), "r.urdf:2: link 'a': <sphere> needs the attribute 'radius'");
+  EXPECT_EQ(shape_error("<sphere radius=\"1 2\"/>"),
+            "r.urdf:2: link 'a': 'radius' must be a number between -1e9 and 1e9, got '1 2'");
+  EXPECT_EQ(shape_error("<box size=\"1 nan 1\"/>"),
+            "r.urdf:2: link 'a': 'size' must be 3 numbers between -1e9 and 1e9, got '1 nan 1'");
+  EXPECT_EQ(shape_error("<box size=\"1 -2 1\"/>"), "r.urdf:2: link 'a': 'size' must be > 0, got -2");
+  EXPECT_EQ(shape_error("<cone/>"),
+            "r.urdf:2: link 'a': the shape must be one of: box, capsule, cylinder, mesh, sphere, got <cone>");
+  EXPECT_EQ(shape_error(""), "r.urdf:2: link 'a': <geometry> must have a shape");
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "sim/hydrodynamics/immersed_bodies.hpp"
+
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -89,20 +91,6 @@ TEST(Floating, ASparHeavesWithItsPeriod) {
                      "spar_cylinder", "added_mass=2.14", "heave_period");
 }
 
-TEST(Floating, AHeavySphereSinksAsFastAsDragAndAddedMassLetIt) {
-  TestWorld test(floating_world(
-      "[{shape: sphere, radius_m: 0.05, density_kgpm3: 2700, drag_coefficient: [0.47], added_mass_coefficient: 0.5}]",
-      "[0, 0, -1]"));
-  Body& body = body_of(test);
-  test.world.step();
-  expect_closed_form(-body.v_WB_W().z() / 0.001, "falling_sphere", "Ca=0.5", "initial_accel");
-  test.run_for(0.499);
-  expect_closed_form(-body.v_WB_W().z(), "falling_sphere", "t=0.5", "velocity");
-  expect_closed_form(-1 - height(body), "falling_sphere", "t=0.5", "depth");
-  test.run_for(5);
-  expect_closed_form(-body.v_WB_W().z(), "falling_sphere", "Ca=0.5", "terminal_velocity");
-}
-
 TEST(Floating, AddedMassOfManyTimesTheMassIsStable) {
   // A bubble of foam: its added mass is 10 times its mass; it rises with (rho V - m) g / (m + 0.5 rho V) at first.
   TestWorld test(floating_world("[{shape: sphere, radius_m: 0.1, density_kgpm3: 51.25, added_mass_coefficient: 0.5}]",
@@ -158,18 +146,6 @@ TEST(Floating, TheCurrentTakesItAlong) {
       "  - {name: it, parts: [{shape: sphere, radius_m: 0.3, density_kgpm3: 512.5}]}\n");
   test.run_for(180);
   EXPECT_NEAR(body_of(test).v_WB_W().x(), 0.5, 0.02);
-}
-
-TEST(Floating, AFastSheetIsBrakedButNotThrownBack) {
-  TestWorld test(floating_world("[{shape: box, size_m: [0.01, 1, 1], density_kgpm3: 1025}]", "[0, 0, -5]", 0.05));
-  Body& body = body_of(test);
-  body.set_velocity_W({100, 0, 0}, {0, 20, 20});
-  for (int i = 0; i < 200; ++i) {
-    test.world.step();
-    EXPECT_GT(body.v_WB_W().x(), -5) << i;
-    EXPECT_LT(body.v_WB_W().norm(), 101) << i;
-  }
-  EXPECT_LT(body.v_WB_W().norm(), 5);
 }
 
 TEST(Floating, ALightBallInLongStepsFloats) {
