@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "shoal/joint_command_t.hpp"
 #include "sim/vehicle/mounted_device.hpp"
 #include "sim/world/world_editor.hpp"

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <string>
 
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/config/diagnostics.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "autonomy/filters/odometer.hpp"
 
-#include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <numbers>
 
 #include "autonomy/filters/ekf.hpp"

@@ -2,10 +2,10 @@
 #include "bridges/base/poll_set.hpp"
 
 #include <gtest/gtest.h>
-
-#include <future>
 #include <sys/eventfd.h>
 #include <unistd.h>
+
+#include <future>
 
 #include "bridges/bus/arrivals.hpp"
 #include "bridges/bus/lcm_bus.hpp"

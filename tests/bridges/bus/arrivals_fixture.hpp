@@ -2,8 +2,9 @@
 #pragma once
 
 #include <sys/eventfd.h>
-
 #include <unistd.h>
+
+#include <chrono>
 
 namespace arrivals_fixture {
 

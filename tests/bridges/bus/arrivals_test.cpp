@@ -2,10 +2,10 @@
 #include "bridges/bus/arrivals.hpp"
 
 #include <gtest/gtest.h>
-
 #include <sys/eventfd.h>
-#include <thread>
 #include <unistd.h>
+
+#include <thread>
 
 #include "bridges/bus/lcm_bus.hpp"
 #include "tests/bridges/bus/arrivals_fixture.hpp"

@@ -2,7 +2,6 @@
 #include "bridges/bus/bus_reach.hpp"
 
 #include <gmock/gmock.h>
-
 #include <stdlib.h>
 #include <sys/stat.h>
 

@@ -3,12 +3,12 @@
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <array>
 #include <mutex>
-#include <sys/socket.h>
 #include <thread>
-#include <unistd.h>
 
 #include "bridges/lcm/lcm_listener.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"

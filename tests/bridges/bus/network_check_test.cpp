@@ -3,14 +3,14 @@
 
 #include <gtest/gtest.h>
 #include <netinet/in.h>
-
-#include <algorithm>
-#include <array>
-#include <cstdlib>
 #include <sched.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
 
 #include "bridges/bus/lcm_bus.hpp"
 #include "bridges/bus/reach_check.hpp"

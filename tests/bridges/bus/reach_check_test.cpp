@@ -3,13 +3,13 @@
 
 #include <gtest/gtest.h>
 #include <netinet/in.h>
-
-#include <algorithm>
 #include <sched.h>
-#include <sstream>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include <algorithm>
+#include <sstream>
 
 #include "bridges/bus/lcm_bus.hpp"
 #include "bridges/bus/network_check.hpp"

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <cstring>
+#include <string>
 
 #include "bridges/web/web_error.hpp"
 

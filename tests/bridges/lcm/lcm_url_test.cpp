@@ -3,10 +3,10 @@
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
-
-#include <cstdlib>
 #include <sys/socket.h>
 #include <unistd.h>
+
+#include <cstdlib>
 
 #include "bridges/bus/lcm_bus.hpp"
 #include "bridges/lcm/lcm_listener.hpp"

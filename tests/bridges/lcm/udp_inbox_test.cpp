@@ -2,14 +2,14 @@
 #include "bridges/lcm/udp_inbox.hpp"
 
 #include <gtest/gtest.h>
-
-#include <chrono>
 #include <poll.h>
 #include <sched.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include <chrono>
 
 #include "bridges/base/file_descriptor.hpp"
 #include "bridges/lcm/lcm_listener.hpp"

@@ -2,18 +2,18 @@
 #include "bridges/lcm/udp_receiver.hpp"
 
 #include <gtest/gtest.h>
-
-#include <array>
-#include <chrono>
-#include <csignal>
-#include <cstdlib>
 #include <poll.h>
 #include <sched.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
-#include <thread>
 #include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <thread>
 #include <vector>
 
 #include "bridges/base/file_descriptor.hpp"

@@ -3,7 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <cstdint>
 #include <cstring>
+#include <string>
 
 #include "bridges/log/event_log.hpp"
 #include "bridges/log/mcap_conversion.hpp"

@@ -4,9 +4,17 @@
 #include <gtest/gtest.h>
 #include <lcm/eventlog.h>
 
+#include <chrono>
+#include <cstdint>
 #include <fstream>
+#include <memory>
+#include <optional>
 #include <queue>
+#include <span>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "bridges/bus/lcm_bus.hpp"
 #include "bridges/log/event_log.hpp"

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 
-#include <fcntl.h>
+#include <cstdint>
 #include <fstream>
 #include <iterator>
+#include <string>
 
 #include "bridges/base/bus_error.hpp"
 #include "bridges/base/file_descriptor.hpp"

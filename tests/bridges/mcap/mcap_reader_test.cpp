@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/mcap/mcap_reader.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 
-#include <fcntl.h>
 #include <fstream>
 #include <iterator>
 

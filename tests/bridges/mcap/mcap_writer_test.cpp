@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/mcap/mcap_writer.hpp"
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 
-#include <fcntl.h>
 #include <iterator>
 
 #include "bridges/base/bus_error.hpp"

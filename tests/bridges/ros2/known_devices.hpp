@@ -3,6 +3,12 @@
 
 #include <gmock/gmock.h>
 
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "shoal/image_t.hpp"
 #include "shoal/sim_scene_t.hpp"
 #include "tests/bridges/ros2/converted.hpp"

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <string>
+
 #include "bridges/signing/signed_message.hpp"
 #include "shoal/sim_audit_t.hpp"
 #include "tests/bridges/lockstep/lockstep_fixture.hpp"
@@ -11,7 +15,8 @@ inline const bridges::RunKey run_key = bridges::RunKey::from_text(std::string(64
 
 /// A world that is controlled with its key only, and a program that has it.
 struct KeyedWorld : lcm_test::LockstepWorld {
-  explicit KeyedWorld(const std::string& terms = "{timeout_s: 0.02, on_timeout: continue}") : lcm_test::LockstepWorld(terms) {
+  explicit KeyedWorld(const std::string& terms = "{timeout_s: 0.02, on_timeout: continue}")
+      : lcm_test::LockstepWorld(terms) {
     lockstep.guard().require(run_key);
   }
   template <typename Message>

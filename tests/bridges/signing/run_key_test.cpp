@@ -2,10 +2,10 @@
 #include "bridges/signing/run_key.hpp"
 
 #include <gmock/gmock.h>
-
-#include <fstream>
 #include <stdlib.h>
 #include <sys/stat.h>
+
+#include <fstream>
 
 #include "bridges/base/bus_error.hpp"
 #include "bridges/bus/bus_reach.hpp"

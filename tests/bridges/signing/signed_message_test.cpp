@@ -2,7 +2,6 @@
 #include "bridges/signing/signed_message.hpp"
 
 #include <gmock/gmock.h>
-
 #include <stdlib.h>
 #include <sys/stat.h>
 

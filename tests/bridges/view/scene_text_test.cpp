@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
+
 #include <nlohmann/json.hpp>
 
 #include "bridges/view/view_publisher.hpp"

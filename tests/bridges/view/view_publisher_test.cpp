@@ -2,10 +2,10 @@
 #include "bridges/view/view_publisher.hpp"
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
 #include <array>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "shoal/sim_asset_t.hpp"
 #include "shoal/sim_scene_t.hpp"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "bridges/view/view_publisher.hpp"
 #include "shoal/message_schema.hpp"

@@ -3,8 +3,11 @@
 
 #include <gmock/gmock.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include "bridges/web/web_server.hpp"
 #include "tests/bridges/web/web_client.hpp"

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <string>
 
 #include "shoal/autopilot_command_t.hpp"
 #include "shoal/autopilot_state_t.hpp"
@@ -16,8 +19,9 @@ namespace autopilot_world {
 inline constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 /// One of the shipped vehicles at the origin, 10 m deep unless it floats.  `overrides`: lines of a map.
-inline std::string world_with(const std::string& file, const std::string& overrides, const std::string& medium = "{water: {}}",
-                       double height_m = -10, const std::string& objects = "") {
+inline std::string world_with(const std::string& file, const std::string& overrides,
+                              const std::string& medium = "{water: {}}", double height_m = -10,
+                              const std::string& objects = "") {
   return "shoal: 1\nphysics: {step_s: 0.01}\nmedium: " + medium + "\n" + objects +
          "vehicles:\n  - name: v\n    file: " + file + "\n    position_m: [0, 0, " + std::to_string(height_m) +
          "]\n    overrides:\n" + overrides;

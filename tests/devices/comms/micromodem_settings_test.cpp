@@ -8,9 +8,9 @@
 
 namespace {
 
-using testing::HasSubstr;
 using testing::Contains;
 using testing::ElementsAre;
+using testing::HasSubstr;
 using testing::StartsWith;
 
 using Modem = test::HostedMicromodem;

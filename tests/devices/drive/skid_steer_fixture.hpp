@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+#include <tuple>
+#include <vector>
+
 #include "sim/world/world_editor.hpp"
 #include "tests/devices/world_fixture.hpp"
 

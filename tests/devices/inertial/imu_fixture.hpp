@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 #include "shoal/imu_t.hpp"
 #include "tests/devices/world_fixture.hpp"
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <string>
+
 #include "shoal/joint_servo_command_t.hpp"
 #include "sim/vehicle/device_context.hpp"
 #include "sim/vehicle/mounted_device.hpp"

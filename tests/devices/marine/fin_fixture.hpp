@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 #include "sim/world/world_editor.hpp"
 #include "tests/devices/marine/marine_fixture.hpp"
 

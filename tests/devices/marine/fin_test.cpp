@@ -14,11 +14,11 @@ namespace {
 using namespace fin_fixture;
 
 using devices::Fin;
+using test::degree;
+using test::rounding_N;
 using test::wet_device;
 using test::WetBox;
 using testing::HasSubstr;
-using test::degree;
-using test::rounding_N;
 
 sim::Vector3d torque(const std::string& keys, double angle_rad, const sim::Vector3d& v_W) {
   WetBox box(wet_device("type: fin, " + keys));

@@ -15,10 +15,10 @@ namespace {
 using namespace fin_fixture;
 
 using devices::Fin;
-using test::wet_device;
-using test::WetBox;
 using test::degree;
 using test::rounding_N;
+using test::wet_device;
+using test::WetBox;
 
 TEST(Fin, ItsAngleToTheFlowAtItsOwnPlaceCounts) {
   const std::string keys = "area_m2: 0.02, lift_slope: 3, drag_coefficient: 0, position_m: [-1, 0, 0]";

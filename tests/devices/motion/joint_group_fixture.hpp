@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "devices/motion/joint_group.hpp"
 #include "shoal/joint_frames_t.hpp"
 #include "tests/devices/world_fixture.hpp"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstring>
+#include <string>
 
 #include "shoal/image_t.hpp"
 #include "tests/devices/world_fixture.hpp"

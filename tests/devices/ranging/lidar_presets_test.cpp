@@ -7,8 +7,8 @@
 
 namespace {
 
-using shoal::point_cloud_t;
 using shoal::planar_lidar_t;
+using shoal::point_cloud_t;
 using test::first_truth;
 using test::ranging_world;
 using test::wall_at;

@@ -14,12 +14,12 @@
 
 namespace {
 
-using test::bottom_at;
-using test::first_report;
-using test::marine_world;
 using shoal::sonar_range_t;
 using sim::degrees_to_radians;
+using test::bottom_at;
+using test::first_report;
 using test::first_truth;
+using test::marine_world;
 using test::ranging_world;
 using test::wall_at;
 

@@ -3,11 +3,11 @@
 
 #include "shoal/usbl_t.hpp"
 #include "tests/devices/navigation/immersed_sensor_fixture.hpp"
-#include "tests/devices/sound_positioning/usbl_world.hpp"
+#include "tests/devices/sound_positioning/usbl_worlds.hpp"
 
 namespace {
 
-using namespace usbl_world;
+using namespace usbl_worlds;
 
 using shoal::usbl_t;
 

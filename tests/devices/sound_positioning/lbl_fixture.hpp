@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 #include "tests/devices/sound_positioning/acoustic_probe.hpp"
 
 namespace lbl_fixture {
@@ -10,7 +12,7 @@ inline std::string lbl_device(const std::string& keys = "") {
 }
 
 inline std::string mooring(const std::string& name, const std::string& position_m, const std::string& more = "",
-                    const std::string& network = "lbl") {
+                           const std::string& network = "lbl") {
   return test::float_at(name, position_m, "{name: t, type: transponder, network: " + network + more + "}");
 }
 

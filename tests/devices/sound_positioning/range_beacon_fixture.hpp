@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 #include "tests/devices/world_fixture.hpp"
 
 namespace range_beacon_fixture {

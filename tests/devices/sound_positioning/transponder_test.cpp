@@ -4,11 +4,11 @@
 #include <gmock/gmock.h>
 
 #include "shoal/usbl_t.hpp"
-#include "tests/devices/sound_positioning/usbl_world.hpp"
+#include "tests/devices/sound_positioning/usbl_worlds.hpp"
 
 namespace {
 
-using namespace usbl_world;
+using namespace usbl_worlds;
 
 using shoal::usbl_t;
 

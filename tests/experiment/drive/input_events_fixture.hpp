@@ -3,12 +3,15 @@
 
 #include <linux/input.h>
 
+#include <cstdint>
 #include <cstring>
+#include <vector>
 
 namespace input_events_fixture {
 
 /// What the kernel writes.
-inline std::vector<std::byte> kernel_bytes(long s, long us, std::uint16_t type, std::uint16_t code, std::int32_t value) {
+inline std::vector<std::byte> kernel_bytes(long s, long us, std::uint16_t type, std::uint16_t code,
+                                           std::int32_t value) {
   input_event event{};
   event.input_event_sec = s;
   event.input_event_usec = us;

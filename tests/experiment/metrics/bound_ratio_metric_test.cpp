@@ -5,11 +5,11 @@
 
 #include "shoal/pose_t.hpp"
 #include "tests/devices/world_fixture.hpp"
-#include "tests/experiment/metrics/bounded_world.hpp"
+#include "tests/experiment/metrics/bounded_worlds.hpp"
 
 namespace {
 
-using namespace bounded_world;
+using namespace bounded_worlds;
 
 using testing::HasSubstr;
 

@@ -5,11 +5,11 @@
 
 #include "messages/yaml/message_writer.hpp"
 #include "shoal/pose_t.hpp"
-#include "tests/experiment/score/metric_world.hpp"
+#include "tests/experiment/score/metric_worlds.hpp"
 
 namespace {
 
-using namespace metric_world;
+using namespace metric_worlds;
 
 TEST(BytesPerMeter, NeedsAnErrorThatBecameSmaller) {
   const std::string metrics =

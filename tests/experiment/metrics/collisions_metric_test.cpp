@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "tests/experiment/score/metric_world.hpp"
+#include "tests/experiment/score/metric_worlds.hpp"
 
 namespace {
 
-using namespace metric_world;
+using namespace metric_worlds;
 
 TEST(Collisions, CountContactsThatBeginButNotWithTheGround) {
   MetricWorld world(

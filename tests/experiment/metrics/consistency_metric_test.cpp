@@ -9,11 +9,11 @@
 #include "shoal/twist_command_t.hpp"
 #include "sim/world/world_editor.hpp"
 #include "sim/world/world_state.hpp"
-#include "tests/experiment/score/metric_world.hpp"
+#include "tests/experiment/score/metric_worlds.hpp"
 
 namespace {
 
-using namespace metric_world;
+using namespace metric_worlds;
 
 constexpr const char* consistency = "  - {name: c, type: consistency, vehicle: r1, channel: est}\n";
 

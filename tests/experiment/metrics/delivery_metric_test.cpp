@@ -8,11 +8,11 @@
 #include "experiment/score/scoring.hpp"
 #include "tests/devices/comms/modem_fixture.hpp"
 #include "tests/devices/world_fixture.hpp"
-#include "tests/experiment/score/metric_world.hpp"
+#include "tests/experiment/score/metric_worlds.hpp"
 
 namespace {
 
-using namespace metric_world;
+using namespace metric_worlds;
 
 TEST(Delivery, OfAWorldWithoutModemsHasNoRatio) {
   MetricWorld world("  - {name: d, type: delivery}\n");

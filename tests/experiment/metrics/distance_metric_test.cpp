@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include "tests/experiment/score/metric_world.hpp"
+#include "tests/experiment/score/metric_worlds.hpp"
 
 namespace {
 
-using namespace metric_world;
+using namespace metric_worlds;
 
 TEST(Distance, IsTheLengthOfTheWay) {
   MetricWorld world(

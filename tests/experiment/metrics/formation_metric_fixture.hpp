@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 #include "experiment/score/scoring.hpp"
 #include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <string>
+
 #include "experiment/score/map/true_map.hpp"
 #include "experiment/score/scoring.hpp"
 #include "shoal/estimate_t.hpp"

@@ -13,12 +13,12 @@
 #include "sim/world/world_state.hpp"
 #include "tests/devices/comms/modem_fixture.hpp"
 #include "tests/devices/world_fixture.hpp"
-#include "tests/experiment/score/metric_world.hpp"
+#include "tests/experiment/score/metric_worlds.hpp"
 #include "tests/sim/medium/log_capture.hpp"
 
 namespace {
 
-using namespace metric_world;
+using namespace metric_worlds;
 
 TEST(PositionError, IsHorizontalUnlessThreeDimensionsAreAskedFor) {
   MetricWorld world(

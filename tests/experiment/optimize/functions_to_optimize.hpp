@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <vector>
 
 #include "experiment/optimize/cma_es.hpp"
 #include "experiment/optimize/genetic.hpp"

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <fstream>
 #include <map>
+#include <string>
 
 #include "experiment/files/html.hpp"
 #include "experiment/files/png_check.hpp"
@@ -26,7 +27,8 @@ inline std::string text_of_file(const std::string& path) {
 }
 
 /// A run of a small world, whose results are left in a folder.
-inline experiment::Summary run_into(const std::string& directory, const std::string& more, const std::string& name = "small") {
+inline experiment::Summary run_into(const std::string& directory, const std::string& more,
+                                    const std::string& name = "small") {
   auto loaded = sim::load_world_text(
       test::rover_world("        - {name: lidar, type: lidar}\n", "", "", "run: {duration_s: 0.2, seed: 7}\n" + more),
       "small.yaml");
@@ -79,7 +81,7 @@ print("; ".join(checker.problems), end="")
 
 /// A results folder of the figures alone, with the world that they are of.
 inline std::string folder_of(const test_support::ScratchFolder& scratch, const std::map<std::string, double>& metrics,
-                      const std::string& world) {
+                             const std::string& world) {
   const std::string directory = scratch.file("figures");
   experiment::Summary summary;
   summary.world = "sea";

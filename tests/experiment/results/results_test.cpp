@@ -2,22 +2,22 @@
 #include "experiment/results/results.hpp"
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "experiment/results/earlier_run.hpp"
 #include "experiment/run/runner.hpp"
 #include "sim/config/config_node.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
-#include "tests/experiment/results/quiet_run.hpp"
+#include "tests/experiment/results/quiet_runs.hpp"
 
 namespace {
 
-using namespace quiet_run;
+using namespace quiet_runs;
 
 using lcm_test::ScratchFolder;
 

@@ -2,9 +2,9 @@
 #include "experiment/results/run_plots.hpp"
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "experiment/results/earlier_run.hpp"
 #include "experiment/results/results.hpp"
@@ -12,11 +12,11 @@
 #include "messages/yaml/message_writer.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 #include "tests/devices/world_fixture.hpp"
-#include "tests/experiment/results/quiet_run.hpp"
+#include "tests/experiment/results/quiet_runs.hpp"
 
 namespace {
 
-using namespace quiet_run;
+using namespace quiet_runs;
 
 namespace fs = std::filesystem;
 

@@ -2,20 +2,20 @@
 #include "experiment/results/summary_file.hpp"
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "experiment/results/earlier_run.hpp"
 #include "experiment/results/results.hpp"
 #include "experiment/run/runner.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
-#include "tests/experiment/results/quiet_run.hpp"
+#include "tests/experiment/results/quiet_runs.hpp"
 
 namespace {
 
-using namespace quiet_run;
+using namespace quiet_runs;
 
 namespace fs = std::filesystem;
 

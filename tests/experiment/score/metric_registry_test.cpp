@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiment/score/metric.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "experiment/score/metric.hpp"
 #include "sim/world/world_editor.hpp"
 #include "sim/world/world_state.hpp"
-#include "tests/experiment/score/metric_world.hpp"
+#include "tests/experiment/score/metric_worlds.hpp"
 
 namespace {
 
-using namespace metric_world;
+using namespace metric_worlds;
 
 TEST(Figures, OfAMetricAreThoseThatItsTypeNames) {
   MetricWorld world(

@@ -6,11 +6,11 @@
 #include "experiment/score/scoring.hpp"
 #include "messages/yaml/message_writer.hpp"
 #include "shoal/twist_command_t.hpp"
-#include "tests/experiment/score/scored_world.hpp"
+#include "tests/experiment/score/scored_worlds.hpp"
 
 namespace {
 
-using namespace scored_world;
+using namespace scored_worlds;
 
 TEST(Scoring, JudgesByTheRulesOfTheWorld) {
   ScoredWorld world(

@@ -5,11 +5,11 @@
 
 #include "experiment/score/scoring.hpp"
 #include "sim/bus/in_process_bus.hpp"
-#include "tests/experiment/score/scored_world.hpp"
+#include "tests/experiment/score/scored_worlds.hpp"
 
 namespace {
 
-using namespace scored_world;
+using namespace scored_worlds;
 
 /// What `save` saved goes back into `scoring`.
 void restore_saved(experiment::Scoring& scoring, const sim::Bytes& bytes, experiment::History history) {

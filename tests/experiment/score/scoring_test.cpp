@@ -9,11 +9,11 @@
 #include "messages/yaml/message_writer.hpp"
 #include "shoal/twist_command_t.hpp"
 #include "sim/bus/in_process_bus.hpp"
-#include "tests/experiment/score/scored_world.hpp"
+#include "tests/experiment/score/scored_worlds.hpp"
 
 namespace {
 
-using namespace scored_world;
+using namespace scored_worlds;
 
 TEST(Scoring, SumsUpTheErrors) {
   ScoredWorld world;

@@ -7,11 +7,11 @@
 #include "messages/yaml/message_writer.hpp"
 #include "shoal/pose_t.hpp"
 #include "shoal/twist_command_t.hpp"
-#include "tests/experiment/score/scored_world.hpp"
+#include "tests/experiment/score/scored_worlds.hpp"
 
 namespace {
 
-using namespace scored_world;
+using namespace scored_worlds;
 
 TEST(Scoring, ComparesWithTheTruthAtTheTimeOfTheEstimate) {
   ScoredWorld world;

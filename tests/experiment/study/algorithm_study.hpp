@@ -2,6 +2,9 @@
 #pragma once
 
 #include <fstream>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "experiment/campaign/verified_runs.hpp"
 #include "experiment/report/study_report.hpp"
@@ -40,8 +43,8 @@ struct AlgorithmStudy {
 
 /// Runs with these rms by algorithm and seed, a bound of 1 m and a NEES by algorithm.
 inline std::vector<experiment::StudyRun> runs_with(const experiment::LoadedStudy& study,
-                                            const std::map<std::string, std::vector<double>>& rms,
-                                            const std::map<std::string, std::vector<double>>& nees) {
+                                                   const std::map<std::string, std::vector<double>>& rms,
+                                                   const std::map<std::string, std::vector<double>>& nees) {
   std::vector<experiment::StudyRun> runs = experiment::plan_study(study, "out");
   for (experiment::StudyRun& run : runs) {
     const auto seed = static_cast<std::size_t>(run.seed - 1);

@@ -2,9 +2,9 @@
 #include "experiment/study/load_study.hpp"
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "experiment/report/study_report.hpp"
 #include "experiment/results/results.hpp"

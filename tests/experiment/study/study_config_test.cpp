@@ -2,6 +2,7 @@
 #include "experiment/study/study_config.hpp"
 
 #include <gmock/gmock.h>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/experiment/study/study_folder.hpp"

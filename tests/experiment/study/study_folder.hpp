@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <nlohmann/json.hpp>
-
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "experiment/report/study_report.hpp"
 #include "experiment/results/results.hpp"
@@ -49,7 +51,7 @@ inline const std::string two_cases =
 
 /// Runs as if they had been done: `rms` by case, one for each seed; NaN: the figure is null.
 inline std::vector<experiment::StudyRun> made_up_runs(const experiment::LoadedStudy& study,
-                                               const std::vector<std::vector<double>>& rms) {
+                                                      const std::vector<std::vector<double>>& rms) {
   std::vector<experiment::StudyRun> runs = experiment::plan_study(study, "out");
   for (experiment::StudyRun& run : runs) {
     const double value = rms[run.in_case][static_cast<std::size_t>(run.seed - study.config.seeds[0])];

@@ -2,9 +2,9 @@
 #include "experiment/study/study_results.hpp"
 
 #include <gmock/gmock.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "experiment/report/study_report.hpp"
 #include "experiment/results/results.hpp"

@@ -2,6 +2,7 @@
 #include "experiment/study/study_rules.hpp"
 
 #include <gmock/gmock.h>
+
 #include <nlohmann/json.hpp>
 
 #include "experiment/report/study_report.hpp"

@@ -14,7 +14,8 @@ inline std::vector<std::string> events_of(const std::string& bytes) {
   std::vector<std::string> events;
   for (const char byte : bytes)
     if (const auto event = keys.next(byte))
-      events.push_back((event->ctrl ? "^" : "") + event->key + (event->action == experiment::KeyEvent::Action::release ? "-" : ""));
+      events.push_back((event->ctrl ? "^" : "") + event->key +
+                       (event->action == experiment::KeyEvent::Action::release ? "-" : ""));
   return events;
 }
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "shoal/message_codec.hpp"
+
 #include <gtest/gtest.h>
 
 #include <random>
 
 #include "all_message_types.hpp"
-#include "shoal/message_codec.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 
 namespace {

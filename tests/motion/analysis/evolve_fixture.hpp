@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
+
 #include "motion/analysis/evolve.hpp"
 #include "tests/project_paths.hpp"
 

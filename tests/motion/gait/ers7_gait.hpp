@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <vector>
+
 #include "motion/analysis/motion_check.hpp"
 #include "motion/gait/half_ellipse.hpp"
 #include "motion/gait/leg_motion.hpp"

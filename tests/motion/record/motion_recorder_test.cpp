@@ -2,12 +2,12 @@
 #include "motion/record/motion_recorder.hpp"
 
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
-#include <unistd.h>
 
 #include "devices/joint/joint_servo.hpp"
 #include "motion/analysis/motion_check.hpp"

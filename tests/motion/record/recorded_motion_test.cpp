@@ -2,11 +2,11 @@
 #include "motion/record/recorded_motion.hpp"
 
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <unistd.h>
 
 #include "motion/analysis/motion_check.hpp"
 #include "motion/analysis/push_trials.hpp"

@@ -2,11 +2,16 @@
 #pragma once
 
 #include <gmock/gmock.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <unistd.h>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "motion/analysis/motion_check.hpp"
 #include "motion/analysis/push_trials.hpp"

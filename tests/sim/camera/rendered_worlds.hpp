@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "sim/camera/renderer.hpp"
 #include "sim/image/image_file.hpp"
 #include "tests/sim/physics/small_worlds.hpp"
@@ -17,7 +21,8 @@ inline sim::OpticsConfig lens() {
   return config;
 }
 
-inline sim::Frame render(const PhysicsWorld& world, const Pose& X_WS, const sim::RenderOptions& options, int per_side = 1) {
+inline sim::Frame render(const PhysicsWorld& world, const Pose& X_WS, const sim::RenderOptions& options,
+                         int per_side = 1) {
   sim::Renderer renderer(world, sim::make_pixel_rays(sim::Optics(lens()), per_side), options,
                          std::make_shared<sim::TextureLibrary>());
   sim::Frame frame;

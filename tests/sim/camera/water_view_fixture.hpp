@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/camera/renderer.hpp"
 #include "sim/camera/water_view.hpp"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+
 #include "sim/clock/vehicle_clock.hpp"
 #include "sim/random/allan.hpp"
 

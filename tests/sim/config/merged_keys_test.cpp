@@ -2,9 +2,9 @@
 #include "sim/config/merged_keys.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
-#include <unistd.h>
 
 #include "sim/config/config_node.hpp"
 #include "tests/sim/config/include_fixture.hpp"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "sim/device/device_registry.hpp"
+
 #include <gtest/gtest.h>
 
 #include <set>
-
-#include "sim/device/device_registry.hpp"
 
 namespace {
 

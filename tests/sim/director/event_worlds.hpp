@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "sim/director/script.hpp"
 #include "sim/world/world_editor.hpp"
 #include "sim/world/world_state.hpp"

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "tests/fidelity/closed_forms.hpp"
+
 #include <gtest/gtest.h>
 
 #include "sim/hydrodynamics/coefficient_model.hpp"
 #include "sim/model/spheroid.hpp"
 #include "sim/vehicle/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
-#include "tests/fidelity/closed_forms.hpp"
 #include "tests/sim/hydrodynamics/marine_worlds.hpp"
 
 namespace {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <span>
+#include <string>
+
 #include "sim/image/image_file.hpp"
 #include "sim/random/random.hpp"
 

@@ -14,10 +14,10 @@
 
 namespace {
 
+using sim::Time;
 using sim::Vector3d;
 using test::closed_forms_of;
 using test::expect_closed_form;
-using sim::Time;
 
 sim::GaussMarkov process() {
   return {sim::Vector3d(1, 2, 3), 0.05, sim::Random(1, "process")};  // a tick each millisecond

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "tests/fidelity/closed_forms.hpp"
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fstream>
+#include <string>
 
 #include "sim/motion/motion.hpp"
 #include "tests/scratch_folder.hpp"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <png.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
-#include <png.h>
-#include <sys/stat.h>
 
 #include "sim/base/crc32.hpp"
 #include "sim/terrain/terrain.hpp"
@@ -15,8 +15,8 @@
 namespace {
 
 using sim::HeightGrid;
-using testing::HasSubstr;
 using test::error_of;
+using testing::HasSubstr;
 
 struct PictureExtra {
   int transparent_level = -1;  ///< of a tRNS chunk; -1: without

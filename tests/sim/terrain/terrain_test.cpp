@@ -3,11 +3,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <png.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
-#include <png.h>
-#include <sys/stat.h>
 
 #include "sim/base/crc32.hpp"
 #include "tests/scratch_folder.hpp"

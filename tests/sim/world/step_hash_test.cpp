@@ -10,11 +10,11 @@
 #include "sim/world/world_state.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tests/devices/state_fixture.hpp"
-#include "tests/sim/world/busy_world.hpp"
+#include "tests/sim/world/busy_worlds.hpp"
 
 namespace {
 
-using namespace busy_world;
+using namespace busy_worlds;
 
 using test::TappedWorld;
 

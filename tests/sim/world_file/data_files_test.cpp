@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every key of worlds, vehicles and registered devices that names a file is of the kind that is checked.
 
+#include "sim/world_file/data_files.hpp"
+
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -9,7 +11,6 @@
 
 #include "sim/config/file_access.hpp"
 #include "sim/device/device_registry.hpp"
-#include "sim/world_file/data_files.hpp"
 #include "sim/world_file/world_config.hpp"
 #include "tests/scratch_folder.hpp"
 

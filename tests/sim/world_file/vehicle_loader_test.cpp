@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "sim/world_file/vehicle_loader.hpp"
+
 #include <gmock/gmock.h>
 
 #include <fstream>
 
 #include "sim/world_file/load_world.hpp"
-#include "sim/world_file/vehicle_loader.hpp"
 #include "tests/scratch_folder.hpp"
 
 namespace {

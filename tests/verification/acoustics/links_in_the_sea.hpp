@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <utility>
+
 #include "verification/acoustics/acoustic_closed_forms.hpp"
 #include "verification/acoustics/acoustic_link.hpp"
 #include "verification/acoustics/ray_picture.hpp"

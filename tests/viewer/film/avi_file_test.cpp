@@ -2,10 +2,10 @@
 #include "viewer/film/avi_file.hpp"
 
 #include <gmock/gmock.h>
-
-#include <iterator>
 #include <signal.h>
 #include <sys/stat.h>
+
+#include <iterator>
 
 #include "sim/image/image_file.hpp"
 #include "tests/scratch_folder.hpp"

@@ -2,7 +2,6 @@
 #include "viewer/film/encoder_program.hpp"
 
 #include <gmock/gmock.h>
-
 #include <signal.h>
 #include <sys/stat.h>
 

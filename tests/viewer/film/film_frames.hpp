@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <signal.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <signal.h>
+#include <string>
+#include <tuple>
 
 #include "sim/image/image_file.hpp"
 #include "tests/scratch_folder.hpp"

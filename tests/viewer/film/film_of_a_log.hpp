@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 #include "tests/experiment/replay/replay_fixture.hpp"
 #include "viewer/film/camera_rig.hpp"
 #include "viewer/film/film.hpp"

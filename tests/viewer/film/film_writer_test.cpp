@@ -2,10 +2,10 @@
 #include "viewer/film/film_writer.hpp"
 
 #include <gmock/gmock.h>
-
-#include <cstdlib>
 #include <signal.h>
 #include <sys/stat.h>
+
+#include <cstdlib>
 
 #include "sim/image/image_file.hpp"
 #include "tests/scratch_folder.hpp"

@@ -4,9 +4,11 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <string>
 
 #include "devices/ranging/camera.hpp"
 #include "shoal/image_t.hpp"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_sound_t.hpp"
 #include "viewer/page_data/traffic_history.hpp"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstring>
+#include <string>
 
 #include "bridges/view/view_publisher.hpp"
 #include "tests/experiment/replay/recorded_run.hpp"

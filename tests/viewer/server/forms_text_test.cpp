@@ -2,6 +2,7 @@
 #include "viewer/server/forms_text.hpp"
 
 #include <gmock/gmock.h>
+
 #include <nlohmann/json.hpp>
 
 #include "tests/experiment/replay/replay_fixture.hpp"

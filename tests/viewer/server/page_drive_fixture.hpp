@@ -2,7 +2,11 @@
 #pragma once
 
 #include <gmock/gmock.h>
+
+#include <chrono>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "experiment/drive/drive_error.hpp"
 #include "tests/experiment/replay/replay_fixture.hpp"

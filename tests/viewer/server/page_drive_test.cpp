@@ -2,6 +2,7 @@
 #include "viewer/server/page_drive.hpp"
 
 #include <gmock/gmock.h>
+
 #include <nlohmann/json.hpp>
 
 #include "experiment/drive/drive_error.hpp"

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <future>
+#include <memory>
+#include <string>
 #include <thread>
 
 #include "experiment/replay/replay.hpp"

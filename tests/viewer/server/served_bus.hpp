@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <chrono>
+#include <cstdint>
 #include <mutex>
+#include <span>
+#include <string>
+#include <thread>
 
 #include "tests/viewer/server/log_page.hpp"
 

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <Eigen/LU>
-
 #include <cmath>
 #include <functional>
+#include <string>
 
 #include "sim/random/random.hpp"
 #include "tests/autonomy/cooperative/algorithms/conversation.hpp"
@@ -17,7 +17,7 @@ using namespace navigation;
 /// server has a satellite fix every 5 minutes.  `compare` is called after each reception with the estimate of the
 /// client and that of the centralized filter.  `server_q`: white noise of the server's displacement, m^2/s.
 inline void converse(const std::string& algorithm, const std::function<bool(int)>& is_lost, std::size_t max_bytes,
-              const std::function<void(const Estimate&, const Estimate&)>& compare, double server_q = 1e-3) {
+                     const std::function<void(const Estimate&, const Estimate&)>& compare, double server_q = 1e-3) {
   sim::Random random(1, "converse");
   const Setup server_setup = test::nav_setup(2, 0, {300, 0}, 1), client_setup = test::nav_setup(2, 1, {0, 0}, 1);
   const auto server = test::started(algorithm, server_setup), client = test::started(algorithm, client_setup);

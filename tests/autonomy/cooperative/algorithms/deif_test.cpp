@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <Eigen/LU>
 #include <gtest/gtest.h>
+
+#include <Eigen/LU>
 
 #include "tests/autonomy/cooperative/algorithms/centralized_fixture.hpp"
 

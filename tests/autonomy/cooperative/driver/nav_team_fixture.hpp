@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 #include "autonomy/cooperative/driver/nav_team.hpp"
 
 namespace nav_team_fixture {

@@ -9,10 +9,10 @@
 
 namespace {
 
-using test::imported;
-using test::notes_of;
 using test::import_error;
+using test::imported;
 using test::link_text;
+using test::notes_of;
 using test::robot_text;
 
 TEST(UrdfReader, ReadsShapesColorsAndTheCommentBeforeTheRobot) {

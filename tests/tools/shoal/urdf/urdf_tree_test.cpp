@@ -9,8 +9,8 @@
 
 namespace {
 
-using test::import_error;
 using sim::Vector3d;
+using test::import_error;
 using test::imported;
 using test::link_text;
 using test::notes_of;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 #include "experiment/score/scoring.hpp"
 #include "shoal/pose_t.hpp"
 #include "tests/devices/world_fixture.hpp"
 
-namespace scored_world {
+namespace scored_worlds {
 
 /// A rover that stands at (1, 2); `more`: keys of the world, after two metrics of its position.
 inline std::string scored_world(const std::string& more = "") {
@@ -43,4 +45,4 @@ struct ScoredWorld {
   experiment::Scoring scoring;
 };
 
-}  // namespace scored_world
+}  // namespace scored_worlds

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <nlohmann/json.hpp>
-
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
+#include <string>
 
 #include "experiment/results/earlier_run.hpp"
 #include "experiment/results/results.hpp"
@@ -12,7 +12,7 @@
 #include "sim/config/config_node.hpp"
 #include "tests/devices/world_fixture.hpp"
 
-namespace quiet_run {
+namespace quiet_runs {
 
 inline std::string text_of_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -33,4 +33,4 @@ inline experiment::RunOptions quiet_run() {
   return options;
 }
 
-}  // namespace quiet_run
+}  // namespace quiet_runs

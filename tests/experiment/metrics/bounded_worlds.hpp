@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 #include "experiment/score/scoring.hpp"
 #include "tests/devices/comms/modem_fixture.hpp"
 
-namespace bounded_world {
+namespace bounded_worlds {
 
 /// A submarine that starts with 10 m, and 100 m east of it a boat with GPS of 0.5 m; both stand still.
 inline std::string bounded_world(const std::string& metrics) {
@@ -47,4 +49,4 @@ struct BoundedWorld {
   experiment::Scoring scoring;
 };
 
-}  // namespace bounded_world
+}  // namespace bounded_worlds

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 #include "experiment/score/link_counts.hpp"
 #include "experiment/score/metric.hpp"
 #include "experiment/score/scoring.hpp"
@@ -10,7 +12,7 @@
 #include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"
 
-namespace metric_world {
+namespace metric_worlds {
 
 /// A rover that stands at (1, 2), 3 m west of a crate; `metrics`: the list.
 inline std::string metric_world(const std::string& metrics) {
@@ -66,4 +68,4 @@ inline Eigen::Matrix3d some_covariance() {
 // A rover that stands still may creep by some 0.01 mm.
 inline constexpr double creep_m = 1e-4;
 
-}  // namespace metric_world
+}  // namespace metric_worlds

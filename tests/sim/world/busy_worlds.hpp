@@ -12,7 +12,7 @@
 #include "sim/world_file/vehicle_loader.hpp"
 #include "tests/devices/state_fixture.hpp"
 
-namespace busy_world {
+namespace busy_worlds {
 
 /// Boxes that fall onto each other, objects of two bodies, rovers, an actor, events: things that come and go while it
 /// runs.
@@ -108,4 +108,4 @@ class DamagedSnapshot : public testing::Test {
   sim::Bytes good;
 };
 
-}  // namespace busy_world
+}  // namespace busy_worlds
