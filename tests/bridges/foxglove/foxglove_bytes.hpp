@@ -5,6 +5,7 @@
 #include <cstring>
 #include <string>
 
+#include "bridges/foxglove/foxglove_message.hpp"
 #include "bridges/web/web_error.hpp"
 
 namespace foxglove_bytes {

@@ -27,7 +27,7 @@ std::string parse_error(const std::string& text) {
 
 TEST(JsonReader, SaysWhereATextIsNoJson) {
   EXPECT_EQ(parse_error("{\"a\": 1}"), "none");
-  EXPECT_EQ(parse_error("{\"a\": 1,\n \"b\": oops}"), "f.json:2:7: must be JSON, got 'ops}'");
+  EXPECT_EQ(parse_error("{\"a\": 1,\n \"b\": oops}"), "f.json:2:7: must be JSON, got 'oops}'");
   EXPECT_EQ(parse_error("{\"a\": 1"), "f.json:1:8: must be JSON, got the end of the file");
   EXPECT_EQ(parse_error(""), "f.json:1:1: must be JSON, got the end of the file");
   EXPECT_EQ(parse_error("1e999"), "f.json: must be JSON with numbers of at most 1.8e308");

@@ -9,13 +9,13 @@ namespace {
 
 bridges::AuditEntry entry(const std::string& kind, const std::string& text, const std::string& client,
                           const std::string& signer) {
-  bridges::AuditEntry entry;
-  entry.sim_time_s = 12.3;
-  entry.kind = kind;
-  entry.text = text;
-  entry.client = client;
-  entry.signer = signer;
-  return entry;
+  bridges::AuditEntry made;
+  made.sim_time_s = 12.3;
+  made.kind = kind;
+  made.text = text;
+  made.client = client;
+  made.signer = signer;
+  return made;
 }
 
 TEST(AuditText, SaysWhoDidWhatAndWhen) {

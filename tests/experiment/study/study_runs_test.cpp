@@ -11,7 +11,8 @@ namespace {
 using namespace study_folder;
 
 TEST(StudyRuns, AreInTheOrderOfCasesPointsAndSeeds) {
-  const StudyFolder folder(two_cases + "factors: [{path: physics.step_s, values: [0.001, 0.01]}]\n", "[7, 3]");
+  const StudyFolder folder(two_cases + "factors: [{name: step, paths: [physics.step_s], values: [0.001, 0.01]}]\n",
+                           "[7, 3]");
   const experiment::LoadedStudy study = experiment::load_study(folder.path());
   const std::vector<experiment::StudyRun> runs = experiment::plan_study(study, "out");
   ASSERT_EQ(runs.size(), 8u);

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "motion/analysis/evolve.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "tests/project_paths.hpp"
 
 namespace evolve_fixture {

@@ -3,17 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include "shoal/actuator_command_t.hpp"
 #include "sim/vehicle/step_clock.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
 
-/// A free body with a wrench, which acts alone; it is commanded to push with 1 N.
+/// A free body with a wrench, which acts alone.
 std::string pushed_world() {
-  return test::box_world(
-      "        - {name: push, type: body_wrench, max_force_N: [9, 9, 9], max_torque_Nm: [9, 9, 9]}\n",
-      "{step_s: 0.01, gravity_mps2: 0}");
+  return test::box_world("        - {name: push, type: body_wrench, force_max_N: 9, torque_max_Nm: 9}\n",
+                         "{step_s: 0.01, gravity_mps2: 0}");
 }
 
 TEST(ActingVehicles, InItsFirstStepAVehicleActsInTurn) {
@@ -26,7 +24,7 @@ TEST(ActingVehicles, InItsFirstStepAVehicleActsInTurn) {
   EXPECT_TRUE(acting.begin_by_groups());
 }
 
-TEST(ActingVehicles, WithoutActuatorsItIsNotThere) {
+TEST(ActingVehicles, WithoutActuatorsItActsAlone) {
   test::TestWorld test(test::box_world("        - {name: imu, type: imu}\n"));
   sim::ActingVehicles acting;
   acting.add(*test.world.find_vehicle("r1"));
@@ -39,7 +37,7 @@ TEST(ActingVehicles, OneThatIsRemovedActsNoMore) {
   const sim::Vehicle& vehicle = *test.world.find_vehicle("r1");
   acting.add(vehicle);
   acting.remove(vehicle);
-  acting.remove(vehicle);  // of one that is not there is nothing
+  acting.remove(vehicle);  // a second time does nothing
   EXPECT_TRUE(acting.begin_by_groups());
 }
 

@@ -15,9 +15,9 @@ TEST(DeviceContext, ADeviceThatNeedsSoundNeedsWater) {
 
 /// The first acceleration of an IMU with noise.
 std::string first_report(const std::string& name, const std::string& seed) {
-  test::TestWorld test(
-      test::box_world("        - {name: " + name + ", type: imu, channel: report, accel_noise: {gaussian_std: 1}}\n",
-                      "{step_s: 0.01}", "run: {seed: " + seed + "}\n"));
+  test::TestWorld test(test::box_world(
+      "        - {name: " + name + ", type: imu, channel: report, phase_s: 0, accel_noise: {gaussian_std: 1}}\n",
+      "{step_s: 0.01}", "run: {seed: " + seed + "}\n"));
   const auto reports = test.bus.open_mailbox("report", 10);
   test.run_for(0.1);
   const auto message = reports->take();

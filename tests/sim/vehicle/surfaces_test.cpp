@@ -23,10 +23,10 @@ struct IcyWorld {
     return config;
   }
   static sim::ContactConfig contact(const std::string& one, const std::string& other, double friction) {
-    sim::ContactConfig contact;
-    contact.between = {one, other};
-    contact.friction = friction;
-    return contact;
+    sim::ContactConfig made;
+    made.between = {one, other};
+    made.friction = friction;
+    return made;
   }
   std::string error_of(const sim::VehicleConfig& vehicle) const {
     sim::VehicleInstance instance;

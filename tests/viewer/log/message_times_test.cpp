@@ -5,6 +5,7 @@
 
 #include "shoal/message_codec.hpp"
 #include "shoal/utime_t.hpp"
+#include "sim/bus/bus.hpp"
 
 namespace {
 
