@@ -54,7 +54,7 @@ TEST(CommonKeys, APointOfAnotherLengthIsNamedByItsPlaceInTheList) {
   points_of("{points: [[1, 2, 3], [4, 5]]}", 3, &errors);
   EXPECT_THAT(errors, ElementsAre(HasSubstr("'points[2]' must be 3 numbers, got [4, 5]")));
   points_of("{points: 7}", 3, &errors);
-  EXPECT_THAT(errors, ElementsAre(HasSubstr("'points' must be a list of points, got 7")));
+  EXPECT_THAT(errors, ElementsAre(HasSubstr("'points' must be a list of points, got '7'")));
   points_of("{points: [[1, 2e7]]}", 2, &errors);
   EXPECT_THAT(errors, ElementsAre(HasSubstr("'points[1]")));  // farther than 1e7 m
 }

@@ -8,10 +8,10 @@
 
 namespace log_paths_fixture {
 
-inline constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double unknown_m = std::numeric_limits<double>::quiet_NaN();
 
 /// A path along y = x from 0 to `end_m`, as many meters deep.
-inline shoal::waypoints_command_t path_to(double end_m, double depth_m = nan, int points = 2) {
+inline shoal::waypoints_command_t path_to(double end_m, double depth_m = unknown_m, int points = 2) {
   shoal::waypoints_command_t path{};
   path.n = points;
   for (int i = 0; i < points; ++i) {

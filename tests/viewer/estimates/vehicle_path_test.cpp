@@ -40,7 +40,7 @@ TEST(VehiclePath, HasThePointsOfTheMessage) {
 }
 
 TEST(VehiclePath, OfVeryManyPointsHasEvenlySpacedOnes) {
-  const auto path = read(path_to(5000, nan, 5001));
+  const auto path = read(path_to(5000, unknown_m, 5001));
   ASSERT_TRUE(path);
   ASSERT_EQ(path->points.size(), viewer::VehiclePath::max_points);
   EXPECT_EQ(path->points.front().x_m, 0);
@@ -51,7 +51,7 @@ TEST(VehiclePath, OfVeryManyPointsHasEvenlySpacedOnes) {
 TEST(VehiclePath, IsNoneForOtherMessagesAndForPointsNowhere) {
   EXPECT_FALSE(viewer::read_path(shoal::encode(shoal::pose_t{})));
   EXPECT_FALSE(viewer::read_path({}));
-  EXPECT_FALSE(read(path_to(nan)));
+  EXPECT_FALSE(read(path_to(unknown_m)));
   EXPECT_FALSE(read(path_to(std::numeric_limits<double>::infinity())));
   EXPECT_FALSE(read(path_to(1e8)));
   EXPECT_FALSE(read(path_to(1, std::numeric_limits<double>::infinity())));
