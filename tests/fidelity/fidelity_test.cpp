@@ -6,26 +6,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <map>
 
-#include "sim/bus/in_process_bus.hpp"
 #include "sim/config/diagnostics.hpp"
-#include "sim/config/message_text.hpp"
-#include "sim/world/bottom_check.hpp"
-#include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
 #include "verification/fidelity/fidelity_report.hpp"
 
 namespace {
-
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::StartsWith;
 
 const std::string cases_file = test_support::source_path("tests/fidelity/cases.yaml");
 
@@ -172,155 +162,6 @@ TEST(Fidelity, WhatAReferenceDoesInItsOwnWayIsSeen) {
   const verification::FidelityResult inflow =
       run("remus100_current", {.overrides = {{"devices.propeller.inflow", "water_speed"}}});
   EXPECT_NEAR(inflow.position_max_m, 10.6, 0.5);
-}
-
-class FidelityFiles : public testing::Test {
- protected:
-  std::string write(const std::string& name, const std::string& text) {
-    std::ofstream(folder_.file(name)) << text;
-    return folder_.file(name);
-  }
-  std::string error_of(const std::string& file, const verification::FidelityOptions& options = {}) {
-    try {
-      for (const verification::FidelityCase& of : verification::read_fidelity_file(file).cases)
-        verification::run_fidelity_case(of, options);
-    } catch (const sim::ConfigError& error) {
-      return error.what();
-    }
-    return {};
-  }
-  std::string cases(const std::string& more,
-                    const std::string& vehicle = test_support::source_path("vehicles/bluerov2.yaml")) {
-    return write("cases.yaml", "shoal: 1\ngroups:\n  - name: g\n    vehicle: " + vehicle + "\n" + more +
-                                   "    cases: [{name: c, reference: c.csv}]\n");
-  }
-  const std::string header = "t[s],x,y,z,phi,theta,psi,u,v,w,p,q,r,push\n";
-  /// At rest at a place.
-  static std::string row(double t) { return sim::number_text(t) + ",1,2,3,0,0,0.5,0,0,0,0,0,0,0\n"; }
-  test_support::ScratchFolder folder_;
-};
-
-TEST_F(FidelityFiles, ATrajectoryOfOnesOwnIsComparedWithItsStart) {
-  write("c.csv", header + "0,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n0.1,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n");
-  const std::string file = cases("    bars: {position_max_m: 1e-9}\n");
-  const verification::FidelityResult result =
-      verification::run_fidelity_case(verification::read_fidelity_file(file).cases.front());
-  EXPECT_NEAR(result.ours.front()[0], 1, 1e-12);
-  EXPECT_NEAR(result.ours.front()[2], 3, 1e-12);
-  EXPECT_NEAR(result.ours.front()[5], 0.5, 1e-12);
-  // 2 N up on 11.5 kg and 14.57 kg of added mass, for 0.1 s.
-  EXPECT_NEAR(result.ours.back()[2] - 3, -2 / 26.07 * 0.01 / 2, 0.1 * 2 / 26.07 * 0.01 / 2);
-  EXPECT_THAT(result.missed, testing::ElementsAre(testing::StartsWith("position_max_m ")));
-}
-
-TEST_F(FidelityFiles, TheReportHasTheTableTheImagesAndOurStates) {
-  write("c.csv", header + "0,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n0.1,1,2,3,0,0,0.5,0,0,0,0,0,0,0\n");
-  const verification::FidelityFile file = verification::read_fidelity_file(cases("    title: Mine\n"));
-  verification::write_fidelity_report(folder_.file("report"), "A word before.\n",
-                                      {verification::run_fidelity_case(file.cases.front())}, true);
-  const auto read = [&](const std::string& name) {
-    std::ifstream in(folder_.file("report/" + name), std::ios::binary);
-    return std::string(std::istreambuf_iterator<char>(in), {});
-  };
-  EXPECT_THAT(read("fidelity.md"), AllOf(HasSubstr("A word before."), HasSubstr("## Mine"),
-                                         HasSubstr("![c](fidelity/c.png)"), HasSubstr("| north (m) | 1.0000 |")));
-  EXPECT_THAT(read("fidelity/c.png"), testing::StartsWith("\x89PNG"));
-  EXPECT_THAT(read("fidelity/c.csv"), testing::StartsWith("t,x,y,z,phi,theta,psi,u,v,w,p,q,r\n0,1,2,3,0,0,0.5,"));
-}
-
-TEST_F(FidelityFiles, MistakesInThemAreNamed) {
-  write("c.csv", header + row(0) + "0.1,1,2,3,0,0,oops,0,0,0,0,0,0,0\n");
-  EXPECT_THAT(error_of(cases("")), HasSubstr("c.csv:3:1: case 'c': must have finite numbers, got 'oops'"));
-  write("c.csv", header + row(0) + row(0.1234));
-  EXPECT_THAT(error_of(cases("")), HasSubstr("c.csv: case 'c': a step of 0.005 s does not meet the row at t = 0.1234"));
-  write("c.csv", header + row(0) + row(0.1));
-  EXPECT_THAT(error_of(cases("    inputs: [{device: wheel, column: push}]\n")),
-              HasSubstr("cases.yaml:5:14: case 'c': vehicle 'bluerov2': there is no device 'wheel'; devices: wrench"));
-  EXPECT_THAT(
-      error_of(cases("    inputs: [{device: wrench, message: shoal.wrench_t, fields: {force_N: [pull, 0, 0]}}]\n")),
-      HasSubstr("c.csv:1:1: case 'c': there is no column 'pull'"));
-  EXPECT_THAT(error_of(cases("    inputs: [{device: wrench}]\n")),
-              HasSubstr("one of 'column' and 'fields' must be given"));
-}
-
-TEST_F(FidelityFiles, AReferenceMustBeATrackOfTwoRowsOrMore) {
-  const auto error_with = [&](const std::string& text) {
-    write("c.csv", text);
-    return error_of(cases(""));
-  };
-  EXPECT_THAT(error_of(cases("")), HasSubstr("c.csv: case 'c': does not exist"));
-  EXPECT_THAT(error_with(""), HasSubstr("c.csv: case 'c': is empty"));
-  EXPECT_THAT(error_with(header), HasSubstr("c.csv: case 'c': must have two rows of numbers or more, has 0"));
-  EXPECT_THAT(error_with(header + row(0)), HasSubstr("c.csv: case 'c': must have two rows of numbers or more, has 1"));
-  EXPECT_THAT(error_with(header + row(0) + row(0.2) + row(0.1)),
-              HasSubstr("c.csv:4:1: case 'c': the time must rise, got 0.1 after 0.2"));
-  EXPECT_THAT(error_with(header + row(0.1) + row(0.2)),
-              HasSubstr("c.csv:2:1: case 'c': the first row must be at t = 0, got 0.1"));
-  EXPECT_THAT(error_with(header + row(0) + "0.1,1e308,2,3,0,0,0.5,0,0,0,0,0,0,0\n"),
-              HasSubstr("c.csv:3:1: case 'c': must have numbers from -1e9 to 1e9, got 1e308"));
-  EXPECT_THAT(error_with("x,y\n0,1\n"), HasSubstr("c.csv:1:1: case 'c': the first column must be t, got 'x'"));
-  EXPECT_EQ(error_with(header + row(0) + row(0.1)), "");
-}
-
-TEST_F(FidelityFiles, ADirectoryIsNoReference) {
-  std::filesystem::create_directory(folder_.file("c.csv"));
-  EXPECT_THAT(error_of(cases("")), HasSubstr("c.csv: case 'c': is not a file"));
-}
-
-TEST_F(FidelityFiles, ErrorsAreAtTheLineOfTheCasesThatCausesThem) {
-  write("c.csv", header + row(0) + row(0.1));
-  EXPECT_THAT(error_of(cases("    world: {physics.foo: 3}\n")),
-              AllOf(HasSubstr(folder_.file("cases.yaml") + ":5:13: case 'c': "), HasSubstr("unknown key 'foo'")));
-  EXPECT_THAT(error_of(cases("    overrides: {bodies.frame.hydrodynamics.foo: 3}\n")),
-              AllOf(HasSubstr(folder_.file("cases.yaml") + ":5:17: case 'c': vehicle 'bluerov2': body 'frame'"),
-                    HasSubstr("unknown key 'foo'")));
-  EXPECT_THAT(error_of(cases("    step_s: 50\n")), HasSubstr(folder_.file("cases.yaml") + ":6:13: case 'c': "));
-  EXPECT_THAT(error_of(cases("", "nope.yaml")),
-              HasSubstr(folder_.file("cases.yaml") + ":4:14: case 'c': there is no vehicle file '" +
-                        folder_.file("nope.yaml")));
-}
-
-TEST_F(FidelityFiles, ErrorsOfOptionsNameTheOption) {
-  write("c.csv", header + row(0) + row(0.1));
-  EXPECT_THAT(error_of(cases(""), {.overrides = {{"a.b", "3"}}}),
-              AllOf(StartsWith("--override a.b: case 'c': vehicle 'bluerov2': "), HasSubstr("unknown key 'a'")));
-  EXPECT_THAT(error_of(cases(""), {.overrides = {{"devices.wrench.rate_hz", "fast"}}}),
-              StartsWith("--override devices.wrench.rate_hz: case 'c': vehicle 'bluerov2': device 'wrench'"));
-}
-
-TEST_F(FidelityFiles, AMessageThatADeviceDoesNotTakeIsRefusedBeforeTheRun) {
-  // The step does not meet the second row: who ran would say that.
-  write("c.csv", header + row(0) + row(0.1234));
-  EXPECT_THAT(error_of(cases("    inputs: [{device: wrench, column: push}]\n")),
-              HasSubstr("cases.yaml:5:14: case 'c': vehicle 'bluerov2': device 'wrench': takes shoal.wrench_t, not "
-                        "'shoal.actuator_command_t'"));
-  EXPECT_THAT(error_of(cases("    inputs: [{device: wrench, message: shoal.nope_t, fields: {a: 1}}]\n")),
-              HasSubstr("takes shoal.wrench_t, not 'shoal.nope_t'"));
-}
-
-TEST_F(FidelityFiles, ThereIsABottomFarBelowAndTheVehicleHasTheNameOfItsFile) {
-  write("c.csv", header + row(0) + row(0.1));
-  const verification::FidelityFile file = verification::read_fidelity_file(cases(""));
-  const verification::FidelityCase& of = file.cases.front();
-  const auto loaded =
-      sim::load_world_tree(verification::fidelity_world(of, verification::read_fidelity_reference(of.reference)),
-                           folder_.file("cases.yaml"));
-  sim::InProcessBus bus;
-  const sim::World world(loaded.config, bus);
-  const sim::Vehicle& vehicle = *world.vehicles()[0];
-  EXPECT_EQ(vehicle.name(), "bluerov2");
-  sim::RayFilter others;
-  others.exclude_group = vehicle.group();
-  EXPECT_TRUE(world.scene().cast(vehicle.X_WV().translation(), -sim::Vector3d::UnitZ(), 12000, others));
-}
-
-TEST_F(FidelityFiles, ALineReportsHowACaseWent) {
-  verification::FidelityResult result;
-  result.of.name = "turn";
-  result.position_rms_m = 0.03125;
-  EXPECT_EQ(verification::fidelity_line(result, 2, 24), "2 of 24: turn: position rms 0.0312 m");
-  result.missed = {"position_rms_m 0.03125 > 0.01"};
-  EXPECT_EQ(verification::fidelity_line(result, 2, 24), "2 of 24: turn: position rms 0.0312 m, bars missed: 1");
 }
 
 }  // namespace

@@ -5,12 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <stdexcept>
 
 #include "autonomy/behaviors/make_behavior.hpp"
 #include "sim/base/math.hpp"
-#include "tests/autonomy/second.hpp"
 
 namespace {
 
@@ -18,16 +15,10 @@ using autonomy::CircleBehavior;
 using autonomy::Course;
 using autonomy::FollowBehavior;
 using autonomy::HoldBehavior;
-using autonomy::make_circle;
-using autonomy::make_follow;
-using autonomy::make_route;
-using autonomy::make_zigzag;
 using autonomy::Motion;
 using autonomy::RouteBehavior;
 using autonomy::turned;
 using autonomy::Vector2d;
-
-using std::numbers::pi;
 using test::second;
 
 /// A craft that turns at 0.3 rad/s at most, and takes the speed it is commanded.
@@ -225,20 +216,6 @@ TEST(Zigzag, CrossesItsLine) {
   const std::vector<Vector2d> expected = {{50, 20}, {150, -20}, {250, 20}, {350, -20}, {400, 0}};
   ASSERT_EQ(points.size(), expected.size());
   for (std::size_t i = 0; i < points.size(); ++i) EXPECT_NEAR((points[i] - expected[i]).norm(), 0, 1e-9);
-}
-
-TEST(MakeBehavior, MakesEachBehavior) {
-  EXPECT_NE(dynamic_cast<RouteBehavior*>(make_route({{1, 2}}, 1, false).get()), nullptr);
-  EXPECT_NE(dynamic_cast<RouteBehavior*>(make_zigzag({0, 0}, {400, 0}, 20, 4, 1, false).get()), nullptr);
-  EXPECT_NE(dynamic_cast<CircleBehavior*>(make_circle({1, 2}, 30, 1).get()), nullptr);
-  EXPECT_NE(dynamic_cast<FollowBehavior*>(make_follow("auv", -10, 30, 1).get()), nullptr);
-}
-
-TEST(MakeBehavior, RefusesWhatCannotBeSteered) {
-  EXPECT_THROW(make_route({}, 1, false), std::invalid_argument);
-  for (const double radius_m : {0.0, -1.0, std::nan("")})
-    EXPECT_THROW(make_circle({1, 2}, radius_m, 1), std::invalid_argument) << radius_m;
-  for (const int legs : {0, 1001}) EXPECT_THROW(make_zigzag({0, 0}, {1, 1}, 5, legs, 1, false), std::invalid_argument);
 }
 
 }  // namespace

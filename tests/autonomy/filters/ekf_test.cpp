@@ -18,7 +18,6 @@ using autonomy::Increment;
 using autonomy::Pose2;
 using autonomy::turned;
 using autonomy::Vector2d;
-
 using std::numbers::pi;
 
 /// A move along an arc, from its beginning.
@@ -26,17 +25,6 @@ Increment arc(double length_m, double turn_rad) {
   if (turn_rad == 0) return {length_m, 0, 0};
   const double radius = length_m / turn_rad;
   return {radius * std::sin(turn_rad), radius * (1 - std::cos(turn_rad)), turn_rad};
-}
-
-TEST(Odometer, GivesMovesInTheBodyFrame) {
-  autonomy::Odometer odometer({{10, 0}, pi / 2});
-  odometer.update({0, 0}, pi / 2);
-  const Increment move = odometer.update({0, 3}, pi / 2);  // it looks along y of its start frame and drives there
-  EXPECT_NEAR(move.forward_m, 3, 1e-12);
-  EXPECT_NEAR(move.left_m, 0, 1e-12);
-  EXPECT_NEAR(move.turn_rad, 0, 1e-12);
-  EXPECT_NEAR(odometer.pose().p_W.x(), 7, 1e-12);  // the start frame itself looks north
-  EXPECT_NEAR(odometer.pose().yaw_rad, pi, 1e-12);
 }
 
 TEST(Ekf, PredictsAStraight) {

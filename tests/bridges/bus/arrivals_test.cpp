@@ -5,56 +5,17 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-#include <future>
 #include <thread>
 
 #include "bridges/bus/lcm_bus.hpp"
+#include "tests/bridges/bus/arrivals_fixture.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 
-namespace bridges {
 namespace {
 
+using namespace arrivals_fixture;
+using namespace bridges;
 using namespace std::chrono_literals;
-
-/// A descriptor that becomes readable when someone calls ring().
-class Bell {
- public:
-  Bell() : fd_(eventfd(0, EFD_NONBLOCK)) {}
-  ~Bell() { close(fd_); }
-  int fd() const { return fd_; }
-  void ring() { eventfd_write(fd_, 1); }
-  bool answer() {
-    eventfd_t times = 0;
-    return eventfd_read(fd_, &times) == 0;
-  }
-
- private:
-  int fd_;
-};
-
-TEST(PollSet, WakesWhoeverWaitsOfTwoThatHoldOneDescriptor) {
-  for (const bool first_waits : {true, false}) {
-    PollSet first, second;
-    Bell bell;
-    int tag = 0;
-    first.add(bell.fd(), &tag);
-    second.add(bell.fd(), &tag);
-    auto woken = std::async(std::launch::async, [&] { return (first_waits ? first : second).wait(-1ms); });
-    bell.ring();
-    const PollSet::Readable readable = woken.get();
-    ASSERT_EQ(readable.count, 1u);
-    EXPECT_EQ(readable.tags[0], &tag);
-  }
-}
-
-TEST(PollSet, ForgetsWhatIsRemoved) {
-  PollSet set;
-  Bell bell;
-  set.add(bell.fd(), nullptr);
-  set.remove(bell.fd());
-  bell.ring();
-  EXPECT_EQ(set.wait(0ms).count, 0u);
-}
 
 /// A bus that has got a message when its bell rings.
 struct BellPort final : Arrivals::Port {
@@ -152,4 +113,3 @@ TEST(Arrivals, OneWaitServesSeveralBuses) {
 }
 
 }  // namespace
-}  // namespace bridges

@@ -20,8 +20,11 @@
 #include "shoal/utime_t.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
+#include "tests/bridges/log/mcap_conversion_fixture.hpp"
 
 namespace {
+
+using namespace mcap_conversion_fixture;
 
 using lcm_test::bytes_of;
 using lcm_test::ScratchFolder;
@@ -43,15 +46,6 @@ void record_clocks(const std::string& path, int count) {
 std::string file_content(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
-}
-
-std::uint64_t count_messages(const std::string& path) {
-  bridges::mcap::McapReader reader(path);
-  std::uint64_t messages = 0;
-  for (bridges::mcap::McapReader::Item item; (item = reader.next()) != bridges::mcap::McapReader::Item::end;)
-    messages += item == bridges::mcap::McapReader::Item::message;
-  EXPECT_TRUE(reader.complete());
-  return messages;
 }
 
 TEST(McapConversion, GivesTheBytesOfADirectRecord) {
@@ -187,24 +181,6 @@ TEST(McapConversion, ReportsTimeThatGoesBack) {
       bridges::convert_to_mcap({folder.file("a.lcm"), folder.file("a.mcap"), {}, {}, {}}, shoal::embedded_types());
   EXPECT_EQ(converted.events, 3u);
   EXPECT_THAT(converted.time_problem, testing::Optional(HasSubstr("time goes back by 1.5 s at event 3")));
-}
-
-TEST(RecordBranch, AnMcapRecordContinuesInAnotherFile) {
-  const ScratchFolder folder;
-  sim::InProcessBus network;
-  bridges::RecordingBus bus(network, folder.file("a.mcap"), 0);
-  bus.publish("x", shoal::encode(shoal::utime_t{1}), sim::Time{10});
-  const std::uint64_t events = bus.recorded();
-  const std::uint64_t position = bus.position();
-  bus.publish("x", shoal::encode(shoal::utime_t{2}), sim::Time{20});
-  bus.prepare(folder.file("b.mcap"), events, position, bridges::Existing::refuse);
-  bus.publish("x", shoal::encode(shoal::utime_t{3}), sim::Time{30});
-  bus.go_on();
-  bus.publish("x", shoal::encode(shoal::utime_t{4}), sim::Time{15});
-  bus.close();
-  EXPECT_EQ(bus.error(), std::nullopt);
-  EXPECT_EQ(count_messages(folder.file("a.mcap")), 3u);
-  EXPECT_EQ(count_messages(folder.file("b.mcap")), 2u);
 }
 
 }  // namespace

@@ -5,81 +5,23 @@
 #include <lcm/eventlog.h>
 
 #include <filesystem>
-#include <fstream>
-#include <queue>
-#include <random>
-#include <sstream>
 
 #include "bridges/bus/lcm_bus.hpp"
 #include "bridges/log/event_log.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
+#include "tests/bridges/log/scripted_bus.hpp"
 
-namespace bridges {
 namespace {
+
+using namespace scripted_bus;
+using namespace bridges;
 
 using lcm_test::await;
 using lcm_test::bytes_of;
 using lcm_test::ScratchFolder;
 using lcm_test::text_of;
+
 using namespace std::chrono_literals;
-
-constexpr std::int64_t epoch = 1'700'000'000'000'000;
-
-std::string contents(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
-
-void write(const std::string& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
-
-/// Hands every mailbox what the test put in, and keeps no message that was published.
-class ScriptedBus final : public sim::Bus {
- public:
-  std::queue<sim::Message> incoming;
-  int published = 0;
-
-  void publish(std::string_view, std::span<const std::byte>, sim::Time) override { ++published; }
-  std::unique_ptr<sim::Mailbox> open_mailbox(const std::string&, std::size_t) override {
-    return std::make_unique<Box>(incoming);
-  }
-  sim::BusCounts counts() const override { return {}; }
-
- private:
-  struct Box final : sim::Mailbox {
-    explicit Box(const std::queue<sim::Message>& scripted) : messages(scripted) {}
-    std::optional<sim::Message> take() override {
-      if (messages.empty()) return std::nullopt;
-      sim::Message message = messages.front();
-      messages.pop();
-      return message;
-    }
-    std::uint64_t dropped() const override { return 0; }
-    void raise_on_arrival(std::shared_ptr<std::atomic<bool>> flag) override {
-      if (!messages.empty()) flag->store(true);
-    }
-    std::queue<sim::Message> messages;
-  };
-};
-
-void run(sim::Bus& inner, const std::string& path) {
-  RecordingBus bus(inner, path, epoch);
-  for (int i = 0; i < 1000; ++i) {
-    bus.publish("a.b", bytes_of(std::string(static_cast<std::size_t>(i % 50), 'x')), sim::Time(i * 10'000));
-    bus.end_of_step();
-  }
-  EXPECT_EQ(bus.recorded(), 1000u);
-  EXPECT_EQ(bus.error().value_or(""), "");
-}
-
-std::vector<LogEvent> read_all(EventLogReader& reader) {
-  std::vector<LogEvent> events;
-  while (auto event = reader.next()) events.push_back(std::move(*event));
-  return events;
-}
 
 TEST(RecordingBus, EqualRunsLeaveEqualFiles) {
   const ScratchFolder folder;
@@ -226,71 +168,4 @@ TEST(RecordingBus, OverwritesOnlyWhenTold) {
   EXPECT_THROW(RecordingBus(inner, folder.file("no/such/folder"), epoch), BusError);
 }
 
-TEST(EventLog, ATruncatedLastEventEndsTheReading) {
-  const ScratchFolder folder;
-  ScriptedBus inner;
-  run(inner, folder.file("log"));
-  const std::string whole = contents(folder.file("log"));
-  for (const std::size_t cut : {1, 10, 40, 60, 75}) {
-    write(folder.file("cut"), whole.substr(0, whole.size() - cut));
-    EventLogReader reader(folder.file("cut"));
-    EXPECT_EQ(read_all(reader).size(), 999u);  // the last one has 28 + 3 + 49 bytes
-    ASSERT_EQ(reader.problems().size(), 1u);
-    EXPECT_EQ(reader.problems()[0], "byte " + std::to_string(whole.size() - 80) + ": the last event is cut off (" +
-                                        std::to_string(80 - cut) + " bytes)");
-  }
-}
-
-TEST(EventLog, SkipsGarbageAndReportsIt) {
-  const ScratchFolder folder;
-  ScriptedBus inner;
-  run(inner, folder.file("log"));
-  const std::string whole = contents(folder.file("log"));
-  const std::size_t third = 31 + 32;  // the first two have 0 and 1 bytes of payload
-  write(folder.file("bad"), whole.substr(0, third) + "rubbish" + whole.substr(third));
-  EventLogReader reader(folder.file("bad"));
-  EXPECT_EQ(read_all(reader).size(), 1000u);
-  ASSERT_EQ(reader.problems().size(), 1u);
-  EXPECT_EQ(reader.problems()[0], "byte 63: 7 bytes between events were skipped");
-}
-
-TEST(EventLog, ADamagedLengthCostsOneEvent) {
-  const ScratchFolder folder;
-  ScriptedBus inner;
-  run(inner, folder.file("log"));
-  std::string log = contents(folder.file("log"));
-  log[24] = 0x70;  // the first event's data length
-  write(folder.file("bad"), log);
-  EventLogReader reader(folder.file("bad"));
-  EXPECT_EQ(read_all(reader).size(), 999u);
-  ASSERT_EQ(reader.problems().size(), 1u);
-  EXPECT_EQ(reader.problems()[0], "byte 0: 31 bytes of a damaged event were skipped");
-}
-
-TEST(EventLog, SurvivesFlippedBits) {
-  const ScratchFolder folder;
-  ScriptedBus inner;
-  run(inner, folder.file("log"));
-  const std::string whole = contents(folder.file("log")).substr(0, 4000);
-  std::mt19937 random(1);
-  for (int i = 0; i < 500; ++i) {
-    std::string log = whole;
-    for (int flips = 0; flips < 5; ++flips) log[random() % log.size()] ^= static_cast<char>(1 << random() % 8);
-    write(folder.file("bad"), log);
-    EventLogReader reader(folder.file("bad"));
-    EXPECT_LE(read_all(reader).size(), 80u);
-  }
-}
-
-TEST(EventLog, AnEmptyFileHasNoEventsAndAMissingOneIsAnError) {
-  const ScratchFolder folder;
-  write(folder.file("empty"), "");
-  EventLogReader reader(folder.file("empty"));
-  EXPECT_FALSE(reader.next());
-  EXPECT_TRUE(reader.problems().empty());
-  EXPECT_THROW(EventLogReader(folder.file("missing")), BusError);
-  EXPECT_THROW(EventLogReader("/dev/null"), BusError);
-}
-
 }  // namespace
-}  // namespace bridges

@@ -1,50 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "devices/autopilot/autopilot.hpp"
+
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
 
-#include "shoal/actuator_command_t.hpp"
-#include "shoal/autopilot_command_t.hpp"
-#include "shoal/autopilot_state_t.hpp"
-#include "shoal/estop_t.hpp"
-#include "shoal/helm_command_t.hpp"
 #include "shoal/station_command_t.hpp"
 #include "shoal/waypoints_command_t.hpp"
 #include "shoal/wrench_t.hpp"
 #include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world_state.hpp"
-#include "tests/devices/world_fixture.hpp"
+#include "tests/devices/autopilot/autopilot_world.hpp"
 
 namespace {
 
-constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
-/// One of the shipped vehicles at the origin, 10 m deep unless it floats.  `overrides`: lines of a map.
-std::string world_with(const std::string& file, const std::string& overrides, const std::string& medium = "{water: {}}",
-                       double height_m = -10, const std::string& objects = "") {
-  return "shoal: 1\nphysics: {step_s: 0.01}\nmedium: " + medium + "\n" + objects +
-         "vehicles:\n  - name: v\n    file: " + file + "\n    position_m: [0, 0, " + std::to_string(height_m) +
-         "]\n    overrides:\n" + overrides;
-}
+using namespace autopilot_world;
 
 const std::string across = "{water: {}, current: [{type: constant, velocity_mps: [0, 0.3, 0]}]}";
-
-class AutopilotWorld : public test::TestWorld {
- public:
-  explicit AutopilotWorld(const std::string& yaml) : TestWorld(yaml), states(*this, "v.autopilot") {}
-  shoal::autopilot_state_t state_after(double time_s) {
-    run_for(time_s);
-    return states.last();
-  }
-  sim::Vector3d place() const { return world.find_vehicle("v")->base().X_WB().translation(); }
-  void helm(double speed_mps, double heading_rad, double depth_m, double altitude_m = nothing) {
-    send("v.autopilot.cmd", shoal::helm_command_t{0, speed_mps, heading_rad, depth_m, altitude_m});
-  }
-  void mode(std::int8_t mode) { send("v.autopilot.cmd", shoal::autopilot_command_t{0, mode}); }
-
-  test::Listener<shoal::autopilot_state_t> states;
-};
 
 TEST(Autopilot, AnAuvHoldsHeadingDepthAndSpeedByItsFins) {
   AutopilotWorld test(world_with("remus100_survey.yaml",
@@ -147,29 +120,6 @@ TEST(Autopilot, ContinuesWithItsCircleFromASnapshot) {
   EXPECT_EQ(again.world.state().hash(), test.world.state().hash());
 }
 
-TEST(Autopilot, ABoatWithTwoPropellersGoesRoundItsWaypoints) {
-  AutopilotWorld test(
-      world_with("otter_autopilot.yaml",
-                 "      devices.autopilot.waypoints: [{at_m: [30, 0], speed_mps: 1.5}, {at_m: [30, 30]}]\n"
-                 "      devices.autopilot.at_end: stop\n",
-                 "{water: {}}", 0));
-  const auto state = test.state_after(90);
-  EXPECT_EQ(state.finished, 1);
-  EXPECT_EQ(state.mode, 1);
-  EXPECT_NEAR(state.speed_error_mps, 0, 0.05);
-  EXPECT_NEAR((test.place().head<2>() - Eigen::Vector2d(30, 30)).norm(), 0, 8);  // it stopped at the second
-}
-
-TEST(Autopilot, ABoatWhosePropellersPushAheadOnlyTurnsAndGoes) {
-  AutopilotWorld test(world_with("otter_autopilot.yaml",
-                                 "      devices.port.min: 0\n      devices.starboard.min: 0\n"
-                                 "      devices.autopilot.hold: {speed_mps: 1, heading_deg: 170}\n",
-                                 "{water: {}}", 0));
-  const auto state = test.state_after(90);
-  EXPECT_NEAR(state.heading_error_rad, 0, 0.02);
-  EXPECT_NEAR(state.speed_error_mps, 0, 0.02);
-}
-
 TEST(Autopilot, ABoatStaysOverAPlaceByHeadingIntoTheCurrent) {
   AutopilotWorld test(world_with("otter_autopilot.yaml", "      devices.autopilot.mode: station\n", across, 0));
   const auto state = test.state_after(300);
@@ -177,80 +127,10 @@ TEST(Autopilot, ABoatStaysOverAPlaceByHeadingIntoTheCurrent) {
   EXPECT_NEAR(state.heading_rad, -sim::degrees_to_radians(90), 0.1);
 }
 
-TEST(Autopilot, ANaiveAuvFollowsItsWaypointsByItsHelm) {
-  AutopilotWorld test(R"(
-shoal: 1
-physics: {step_s: 0.01}
-medium: {water: {}, current: [{type: constant, velocity_mps: [0, 0.3, 0]}]}
-vehicles:
-  - name: v
-    position_m: [0, 0, -5]
-    model:
-      shoal: 1
-      vehicle: naive
-      bodies: [{name: hull, kinematic: true, parts: [{shape: sphere, radius_m: 0.1}]}]
-      devices:
-        - {name: drive, type: naive_drive}
-        - {name: autopilot, type: autopilot, helm: drive, waypoints: [{at_m: [1000, 0], depth_m: 8, speed_mps: 1.5}]}
-)");
-  const auto state = test.state_after(200);
-  EXPECT_NEAR(state.cross_track_m, 0, 0.1);
-  EXPECT_NEAR(test.place().z(), -8, 0.05);
-  EXPECT_NEAR(state.heading_rad, -std::asin(0.2), 0.02);
-}
-
-TEST(Autopilot, TheSpeedOfANaiveAuvIsThroughTheWater) {
-  AutopilotWorld test(R"(
-shoal: 1
-physics: {step_s: 0.01}
-medium: {water: {}, current: [{velocity_mps: [0.6, 0, 0]}]}
-vehicles:
-  - name: v
-    position_m: [0, 0, -5]
-    model:
-      shoal: 1
-      vehicle: naive
-      bodies: [{name: hull, kinematic: true, parts: [{shape: sphere, radius_m: 0.1}]}]
-      devices:
-        - {name: drive, type: naive_drive}
-        - {name: autopilot, type: autopilot, helm: drive, hold: {speed_mps: 1.5, heading_deg: 0}}
-)");
-  const auto state = test.state_after(60);
-  // It is carried along at 2.1 m/s over ground.
-  EXPECT_NEAR(state.speed_error_mps, 0, 1e-3);
-}
-
-TEST(Autopilot, ANaiveAuvKeepsItsAltitudeWhateverTheTide) {
-  AutopilotWorld test(R"(
-shoal: 1
-physics: {step_s: 0.02}
-medium: {water: {}, tides: [{amplitude_m: 5}]}
-objects: [{name: bottom, fixed: true, position_m: [0, 0, -30], parts: [{shape: plane}]}]
-vehicles:
-  - name: v
-    position_m: [0, 0, -20]
-    model:
-      shoal: 1
-      vehicle: naive
-      bodies: [{name: hull, kinematic: true, parts: []}]
-      devices:
-        - {name: drive, type: naive_drive}
-        - {name: autopilot, type: autopilot, helm: drive, hold: {speed_mps: 1.5, altitude_m: 6}}
-)");
-  const auto state = test.state_after(120);
-  EXPECT_NEAR(state.altitude_error_m, 0, 0.01);
-  EXPECT_NEAR(test.place().z(), -24, 0.01);
-}
-
 /// A medium with a constant current.
 std::string current_of(double x_mps, double y_mps) {
   return "{water: {}, current: [{type: constant, velocity_mps: [" + std::to_string(x_mps) + ", " +
          std::to_string(y_mps) + ", 0]}]}";
-}
-
-double tilt_deg(const AutopilotWorld& test) {
-  return std::acos(std::min(1.0, test.world.find_vehicle("v")->base().X_WB().linear()(2, 2))) /
-         sim::degrees_to_radians(1);
 }
 
 double forward_mps(const AutopilotWorld& test) {
@@ -386,51 +266,6 @@ TEST(Autopilot, WhatItHoldsDoesNotDependOnWhatWasBefore) {
   EXPECT_LT(test.state_after(320).distance_m, 0.5);
 }
 
-std::vector<std::string> level_lines(const std::string& overrides, bool warnings) {
-  AutopilotWorld test(world_with("bluerov2_station.yaml", overrides));
-  sim::Warnings& building = test.world.warnings().building();
-  return warnings ? building.lines() : building.notes();
-}
-
-TEST(Autopilot, SaysUpToWhichSpeedItsGainsOutweighTheMunkMoment) {
-  using testing::ElementsAre;
-  using testing::HasSubstr;
-  using testing::IsEmpty;
-  // (w^2 (I + A) + W BG) / (Az - Ax) = (25 x 0.365 + 1.347) / 12.32 ahead, (25 x 0.449 + 1.347) / 11.56 aside.
-  const std::string reported = "vehicle 'v': device 'autopilot': it holds the vehicle level up to ";
-  EXPECT_THAT(
-      level_lines("      devices.autopilot.mode: hold\n", false),
-      ElementsAre(HasSubstr(reported + "0.92 m/s ahead and 1.04 m/s to the side; the thrusters reach 0.85 m/s and")));
-  EXPECT_THAT(level_lines("      devices.autopilot.mode: hold\n", true), Not(testing::Contains(HasSubstr("level"))));
-  // With 1.2 rad/s: (0.526 + 1.347) / 12.32, and the gain needed at 0.847 m/s is 4.53.
-  EXPECT_THAT(level_lines("      devices.autopilot.gains.attitude.bandwidth_radps: 1.2\n", true),
-              testing::Contains(AllOf(HasSubstr(reported + "0.39 m/s ahead"),
-                                      HasSubstr("unless 'gains: attitude: bandwidth_radps' is above 4.53"))));
-  EXPECT_THAT(level_lines("      devices.autopilot.axes: [surge, sway, heave, yaw]\n", true),
-              testing::Contains(HasSubstr("the thrusters do not control its tilt")));
-}
-
-TEST(Autopilot, TurnsOverWhereItsGainsLoseToTheMunkMoment) {
-  // The gains that are said to be enough below 0.39 m/s.
-  const auto tilt_at = [](double speed_mps) {
-    AutopilotWorld test(world_with("bluerov2_station.yaml",
-                                   "      devices.autopilot.gains.attitude.bandwidth_radps: 1.2\n"
-                                   "      devices.autopilot.mode: hold\n",
-                                   "{water: {}}", -50));
-    test.run_for(1);
-    test.helm(speed_mps, 0, 50);
-    double tilt = 0;
-    for (int i = 0; i < 120; ++i) {
-      test.run_for(1);
-      tilt = std::max(tilt, tilt_deg(test));
-    }
-    return tilt;
-  };
-  EXPECT_LT(tilt_at(0.37), 5);
-  // The estimate of the disturbance and a heave that gives way hold some more than the closed form.
-  EXPECT_GT(tilt_at(0.5), 20);
-}
-
 TEST(Autopilot, TakesSetpointsAndLeavesWhatIsNaN) {
   AutopilotWorld test(world_with("remus100_survey.yaml",
                                  "      devices.autopilot.hold: {speed_mps: 1, heading_deg: 0, depth_m: 10}\n"));
@@ -498,56 +333,6 @@ TEST(Autopilot, TakesARouteAStationAndContinues) {
   EXPECT_EQ(state.waypoint, 0);
 }
 
-TEST(Autopilot, ReckonsWithTheDensityOfItsFins) {
-  const auto rudder_of = [](const std::string& keys) {
-    AutopilotWorld test(R"(
-shoal: 1
-physics: {step_s: 0.01}
-medium: {water: {}}
-vehicles:
-  - name: v
-    position_m: [0, 0, -10]
-    model:
-      shoal: 1
-      vehicle: auv
-      bodies: [{name: hull, hydrodynamics: {mass_kg: 30, inertia_kgm2: [0.2, 4, 4]}, parts: [{shape: sphere, radius_m: 0.1}]}]
-      devices:
-        - {name: propeller, type: thruster, position_m: [-0.8, 0, 0]}
-        - {name: rudder, type: fin, position_m: [-0.7, 0, 0], area_m2: 0.5)" +
-                        keys + R"(}
-        - {name: elevator, type: fin, position_m: [-0.7, 0, 0], rpy_deg: [90, 0, 0], area_m2: 0.5)" +
-                        keys + R"(}
-        - {name: autopilot, type: autopilot, thrusters: [propeller], fins: [rudder, elevator], hold: {heading_deg: 1}}
-)");
-    test::Listener<shoal::actuator_command_t> rudder(test, "v.rudder.cmd");
-    test.run_for(0.15);
-    return rudder.last().value;
-  };
-  const double plain = rudder_of("");
-  ASSERT_NE(plain, 0);
-  ASSERT_LT(std::abs(plain), 0.2) << "not at its limit";
-  EXPECT_NEAR(rudder_of(", density_kgpm3: 2050") / plain, 0.5, 1e-9);
-}
-
-TEST(Autopilot, SwitchedOffItLeavesTheActuatorsToOthers) {
-  AutopilotWorld test(world_with("remus100_survey.yaml", "      devices.autopilot.mode: 'off'\n"));
-  test::Listener<shoal::actuator_command_t> commands(test, "v.propeller.cmd");
-  EXPECT_EQ(test.state_after(2).mode, 0);
-  EXPECT_TRUE(commands.take_all().empty());
-  test.send("v.propeller.cmd", shoal::actuator_command_t{0, 1000});
-  test.run_for(30);
-  EXPECT_GT(test.world.find_vehicle("v")->base().v_WB_W().x(), 1);
-  commands.take_all();
-  test.mode(1);
-  test.run_for(1);
-  EXPECT_EQ(commands.take_all().size(), 10u);  // its rate is 10 Hz
-  test.mode(0);
-  test.run_for(1);
-  commands.take_all();
-  test.run_for(1);
-  EXPECT_TRUE(commands.take_all().empty());
-}
-
 TEST(Autopilot, RefusesBadCommandsAndContinues) {
   AutopilotWorld test(world_with("remus100_survey.yaml", "      devices.autopilot.hold: {speed_mps: 1}\n"));
   test.run_for(1);
@@ -570,33 +355,6 @@ TEST(Autopilot, ADepthIsAnotherStateThanAnAltitude) {
   };
   EXPECT_EQ(hash_of("{depth_m: 5}"), hash_of("{depth_m: 5}"));
   EXPECT_NE(hash_of("{depth_m: 5}"), hash_of("{altitude_m: 5}"));
-}
-
-TEST(Autopilot, SaysWhatIsWrongWithItsParameters) {
-  const auto error = [](const std::string& file, const std::string& overrides) {
-    return test::error_of_world(world_with(file, overrides));
-  };
-  using testing::HasSubstr;
-  EXPECT_THAT(error("remus100_survey.yaml", "      devices.autopilot.fins: [rudder, plane]\n"),
-              HasSubstr("device 'autopilot': 'fins' names no fin 'plane'"));
-  EXPECT_THAT(error("remus100_survey.yaml", "      devices.autopilot.thrusters: [rudder]\n"),
-              HasSubstr("device 'autopilot': 'thrusters' names no thruster 'rudder'"));
-  EXPECT_THAT(error("otter_autopilot.yaml", "      devices.autopilot.axes: [surge, sway]\n"),
-              HasSubstr("'axes': the thrusters cannot give sway beside the axes before it"));
-  EXPECT_THAT(error("otter_autopilot.yaml", "      devices.autopilot.axes: [surge, jaw]\n"),
-              HasSubstr("'axes' must be of surge, sway, heave, roll, pitch, yaw; got 'jaw'"));
-  EXPECT_THAT(error("otter_autopilot.yaml", "      devices.autopilot.thruster_weights: [1]\n"),
-              HasSubstr("'thruster_weights' must have one number for each thruster"));
-  EXPECT_THAT(error("otter_autopilot.yaml", "      devices.autopilot.thrusters: [port, starboard, port]\n"),
-              HasSubstr("'thrusters' names 'port' twice"));
-  EXPECT_THAT(error("otter_autopilot.yaml", "      devices.autopilot.waypoints: [{at_m: [1, 2, 3]}]\n"),
-              HasSubstr("'at_m' must be two numbers"));
-  EXPECT_THAT(error("otter_autopilot.yaml", "      devices.autopilot.mode: waypoints\n"),
-              HasSubstr("'mode' waypoints needs 'waypoints' or 'lawnmower'"));
-  EXPECT_THAT(error("otter_autopilot.yaml",
-                    "      devices.autopilot.thrusters: []\n      devices.autopilot.axes: []\n"
-                    "      devices.autopilot.helm: gps\n"),
-              HasSubstr("'helm' names no device 'gps' that takes shoal.helm_command_t"));
 }
 
 }  // namespace

@@ -4,53 +4,16 @@
 #include <gmock/gmock.h>
 
 #include "shoal/thrust_rudder_command_t.hpp"
-#include "shoal/twist_command_t.hpp"
-#include "shoal/wheel_speeds_command_t.hpp"
 #include "sim/world/world_editor.hpp"
 #include "tests/devices/drive/drive_support.hpp"
+#include "tests/devices/drive/skid_steer_fixture.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
 
-/// Four wheels at (+-0.15, +-0.2) on a plane, each with a quarter of the weight.
-std::string skid_world(const std::string& drive) {
-  std::string bodies, joints;
-  for (const auto& [name, x, y] : std::vector<std::tuple<std::string, std::string, std::string>>{
-           {"fl", "0.15", "0.2"}, {"rl", "-0.15", "0.2"}, {"fr", "0.15", "-0.2"}, {"rr", "-0.15", "-0.2"}}) {
-    bodies += "        - {name: " + name + "_wheel, position_m: [" + x + ", " + y +
-              ", 0.1], parts: [{shape: sphere, radius_m: 0.1, mass_kg: 0.5}]}\n";
-    joints += "        - {name: " + name + ", type: hinge, bodies: [base, " + name + "_wheel], anchor_m: [" + x + ", " +
-              y + ", 0.1], axis: [0, 1, 0]}\n";
-  }
-  return R"(
-shoal: 1
-physics: {step_s: 0.001}
-contacts: [{between: [any, any], friction: 0.8}]
-objects:
-  - {name: ground, fixed: true, parts: [{shape: plane}]}
-vehicles:
-  - name: r1
-    model:
-      shoal: 1
-      vehicle: skid
-      bodies:
-        - {name: base, parts: [{shape: box, size_m: [0.4, 0.3, 0.1], position_m: [0, 0, 0.12], mass_kg: 10}]}
-)" + bodies +
-         "      joints:\n" + joints +
-         "      devices:\n        - {name: drive, type: skid_steer, left_joints: [fl, rl], right_joints: [fr, rr], "
-         "wheel_radius_m: 0.1" +
-         drive + "}\n";
-}
-
-// Each wheel rubs against its slip, (b w - v, a w) where the sides run at -+v: the moments about the middle balance for
-// v / w = b + a^2 / b.  The effective track is twice that: 2 (0.2 + 0.15^2 / 0.2) = 0.625 m.
-const std::string track = ", track_m: 0.625, max_speed_mps: 2, max_acceleration_mps2: 5, max_torque_Nm: 20";
+using namespace skid_steer_fixture;
 
 using test::twist;
-
-const sim::Vehicle& rover(const test::TestWorld& test) {
-  return *test.world.find_vehicle("r1");
-}
 
 TEST(SkidSteer, TurnsOnTheSpotWithItsEffectiveTrack) {
   test::TestWorld test(skid_world(track));
@@ -71,17 +34,6 @@ TEST(SkidSteer, DrivesStraightAtTheCommandedSpeed) {
   test.run_for(4);
   EXPECT_NEAR(rover(test).X_WV().translation().x() - x0, 2.0, 0.002);  // 0.1 %: contact softness (cfm)
   EXPECT_NEAR(rover(test).X_WV().translation().y(), 0.0, 1e-3);        // the solver's order of the wheels
-}
-
-TEST(SkidSteer, AllWheelsOfASideTurnAlike) {
-  test::TestWorld test(skid_world(track));
-  shoal::wheel_speeds_command_t command{};
-  command.left_radps = 3;
-  command.right_radps = 5;
-  test.send("r1.drive.cmd", command);
-  test.run_for(1);
-  for (const char* name : {"fl", "rl"}) EXPECT_NEAR(rover(test).joint(name).velocity(), 3, 0.02) << name;
-  for (const char* name : {"fr", "rr"}) EXPECT_NEAR(rover(test).joint(name).velocity(), 5, 0.02) << name;
 }
 
 TEST(SkidSteer, TakesThrustAndRudderAsAVessel) {

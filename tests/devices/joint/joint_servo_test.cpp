@@ -3,28 +3,14 @@
 
 #include <gmock/gmock.h>
 
-#include "shoal/joint_command_t.hpp"
-#include "shoal/joint_servo_command_t.hpp"
 #include "sim/vehicle/mounted_device.hpp"
 #include "sim/world/world_editor.hpp"
 #include "tests/devices/joint/arm_fixture.hpp"
+#include "tests/devices/joint/joint_servo_fixture.hpp"
 
 namespace {
 
-std::string servo(const std::string& more) {
-  return "        - {name: servo, type: joint_servo, joint: shoulder" + more + "}\n";
-}
-
-void command(test::TestWorld& test, int mode, double value) {
-  shoal::joint_servo_command_t message{};
-  message.mode = static_cast<std::int8_t>(mode);
-  (mode == 0 ? message.position : mode == 1 ? message.velocity : message.effort) = value;
-  test.send("a1.servo.cmd", message);
-}
-
-const sim::Joint& shoulder(const test::TestWorld& test) {
-  return test.world.find_vehicle("a1")->joint("shoulder");
-}
+using namespace joint_servo_fixture;
 
 TEST(JointServo, HoldsWhereItStartsUntilItIsTold) {
   test::TestWorld test(test::arm_world(servo(", max_effort: 50")));
@@ -47,23 +33,6 @@ TEST(JointServo, MovesAtExactlyItsLimitsAndStopsAtItsTarget) {
   EXPECT_NEAR(velocities[2250 - 1], 0.25, 1e-2);  // half way down, except for the rounding to whole steps
   EXPECT_NEAR(velocities[2510], 0, 1e-3);
   EXPECT_NEAR(shoulder(test).position(), 1, 1e-5);
-}
-
-TEST(JointServo, SetPointReachesRestExactlyFromAnyDistance) {
-  for (const double target : {1e-7, 1e-3, 0.1, -2.345, 50.0}) {
-    devices::SetPoint point;
-    double last = 0;
-    for (int i = 0; i < 100000 && point.position != target; ++i) {
-      point.approach(target, {1.5, 3}, 0.01);
-      ASSERT_LE(std::abs(point.velocity - last), 0.03 + 1e-12) << target;
-      ASSERT_LE(std::abs(point.velocity), 1.5) << target;
-      ASSERT_LE(std::abs(point.position), std::abs(target) + 1e-12) << "beyond " << target;
-      last = point.velocity;
-    }
-    EXPECT_EQ(point.position, target);
-    point.approach(target, {1.5, 3}, 0.01);
-    EXPECT_EQ(point.velocity, 0) << target;
-  }
 }
 
 TEST(JointServo, PidEndsWhereItsSpringCarriesTheArm) {
@@ -218,24 +187,6 @@ TEST(JointServo, GoesToItsSafeStateWhenCommandsStopComing) {
   EXPECT_NEAR(end("stop"), distance + 0.402 * 0.402 / 4, 2e-3);
   EXPECT_NEAR(end("park"), -0.5, 1e-5);
   EXPECT_GT(std::abs(end("coast")), 0.5);  // it swings
-}
-
-TEST(JointServo, TakesTheVelocityCommandOfAJointMotorToo) {
-  test::TestWorld test(test::arm_world(servo(", max_effort: 50")));
-  shoal::joint_command_t message{};
-  message.velocity = 0.3;
-  test.send("a1.servo.cmd", message);
-  test.run_for(0.5);
-  EXPECT_NEAR(shoulder(test).velocity(), 0.3, 1e-4);
-  EXPECT_EQ(test.world.counts().bad_messages, 0);
-}
-
-TEST(JointServo, IgnoresAModeThatDoesNotExist) {
-  test::TestWorld test(test::arm_world(servo(", max_effort: 50")));
-  command(test, 7, 1);
-  test.run_for(0.2);
-  EXPECT_EQ(test.world.counts().bad_messages, 1);
-  EXPECT_NEAR(shoulder(test).position(), 0, 1e-6);
 }
 
 TEST(JointServo, TakesThePowerOfItsMotionAndItsHeat) {

@@ -3,42 +3,22 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
 #include <limits>
 
 #include "shoal/estop_t.hpp"
-#include "shoal/joint_frames_t.hpp"
 #include "shoal/joint_group_state_t.hpp"
 #include "sim/vehicle/mounted_device.hpp"
 #include "tests/devices/joint/leg_fixture.hpp"
+#include "tests/devices/motion/joint_group_fixture.hpp"
 #include "tests/devices/state_fixture.hpp"
 
 namespace {
 
+using namespace joint_group_fixture;
+
 using testing::ElementsAre;
-using testing::HasSubstr;
+
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-const std::string group = "        - {name: group, type: joint_group}\n";
-
-shoal::joint_frames_t frames(std::vector<std::string> joints, std::vector<std::vector<double>> positions) {
-  shoal::joint_frames_t message{};
-  message.n_joints = static_cast<std::int32_t>(joints.size());
-  message.joint_name = std::move(joints);
-  message.n_frames = static_cast<std::int32_t>(positions.size());
-  message.position = std::move(positions);
-  return message;
-}
-
-const devices::JointGroup& group_of(test::LoadedTestWorld& test) {
-  return dynamic_cast<const devices::JointGroup&>(*test.world.find_vehicle("dog")->find_device("group")->sensor());
-}
-
-/// Set point of a servo.
-double set_point(test::LoadedTestWorld& test, const std::string& servo) {
-  const auto* device = test.world.find_vehicle("dog")->find_device(servo)->actuator();
-  return dynamic_cast<const devices::JointServo&>(*device).set_point().position;
-}
 
 TEST(JointGroup, PlaysFramesOf8MsLinearlyBetweenTheirValues) {
   test::TestWorld test(test::leg_world(group));
@@ -120,32 +100,6 @@ TEST(JointGroup, NaNLeavesAJointAsItWas) {
   EXPECT_NEAR(set_point(test, "knee"), 0.3, 1e-15);
 }
 
-TEST(JointGroup, LimitsAJointByAnother) {
-  const std::string limits =
-      ", limits: [{joint: knee, by: hip, from_deg: -90, low_deg: -10}, {joint: knee, by: hip, from_deg: 10, low_deg: "
-      "-5, high_deg: 20}]}\n";
-  test::TestWorld test(test::leg_world("        - {name: group, type: joint_group" + limits));
-  constexpr double deg = 0.017453292519943295;
-  test.send("dog.group.cmd", frames({"hip", "knee"}, {{0, -30 * deg}}));
-  test.run_for(0.05);
-  EXPECT_NEAR(set_point(test, "knee"), -10 * deg, 1e-12);
-  test.send("dog.group.cmd", frames({"hip"}, {{12 * deg}}));
-  test.run_for(0.05);
-  EXPECT_NEAR(set_point(test, "knee"), -5 * deg, 1e-12);
-  test.send("dog.group.cmd", frames({"knee"}, {{40 * deg}}));
-  test.run_for(0.05);
-  EXPECT_NEAR(set_point(test, "knee"), 20 * deg, 1e-12);
-  EXPECT_GT(group_of(test).counts().clipped, 0);
-}
-
-TEST(JointGroup, CountsSetPointsBeyondTheRangeOfAServo) {
-  test::TestWorld test(test::leg_world(group));
-  test.send("dog.group.cmd", frames({"knee"}, {{1.5}}));
-  test.run_for(0.05);
-  EXPECT_NEAR(set_point(test, "knee"), 1, 1e-12);  // high_stop
-  EXPECT_GT(group_of(test).counts().clipped, 0);
-}
-
 TEST(JointGroup, AtAnEmergencyStopItDropsItsFrames) {
   test::TestWorld test(test::leg_world("        - {name: estop, type: estop}\n" + group));
   test.send("dog.group.cmd", frames({"hip"}, {{0.01}, {0.5}}));
@@ -181,20 +135,6 @@ TEST(JointGroup, IgnoresBadPacketsAndContinues) {
   test.run_for(0.1);
   EXPECT_EQ(set_point(test, "hip"), 0);
   EXPECT_EQ(group_of(test).counts().played, 0);
-}
-
-TEST(JointGroup, SaysWhatIsWrongWithItsParameters) {
-  const auto error = [](const std::string& keys) {
-    return test::error_of_world(test::leg_world("        - {name: group, type: joint_group, " + keys + "}\n"));
-  };
-  EXPECT_THAT(error("joints: [hip, kne]"),
-              HasSubstr("'joints' names 'kne', which is not a joint_servo of the vehicle"));
-  EXPECT_THAT(error("joints: [knee, maker/knee]"), HasSubstr("'joints' names 'maker/knee' twice"));
-  EXPECT_THAT(error("frame_s: 0"), HasSubstr("'frame_s' must be >= 0.001 and <= 1"));
-  EXPECT_THAT(error("limits: [{joint: knee, by: tail, from_deg: 0}]"), HasSubstr("'limits' names 'tail'"));
-  EXPECT_THAT(error("limits: [{joint: knee, by: knee, from_deg: 0}]"), HasSubstr("'by' must be another joint"));
-  EXPECT_THAT(error("limits: [{joint: knee, by: hip, from_deg: 0, low_deg: 2, high_deg: 1}]"),
-              HasSubstr("'high_deg' must not be below 'low_deg'"));
 }
 
 TEST(JointGroup, ContinuesWithItsFramesFromASnapshot) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "devices/navigation/pressure.hpp"
+
 #include <gmock/gmock.h>
 
 #include "shoal/pressure_t.hpp"
@@ -15,6 +17,7 @@ std::string with_gravity(std::string yaml) {
   const std::string none = "gravity_mps2: 0";
   return yaml.replace(yaml.find(none), none.size(), "gravity_mps2: 9.80665");
 }
+
 constexpr double fall_m = 9.80665 * 0.01 * 0.01;  // of ODE in one step of 10 ms
 
 TEST(Pressure, IsTheHydrostaticPressureAtItsDepth) {
@@ -25,13 +28,6 @@ TEST(Pressure, IsTheHydrostaticPressureAtItsDepth) {
   // The reference's tolerance of 1e-4 is 35 Pa; 1 mm of fall is 10 Pa.
   EXPECT_NEAR(report.pressure_Pa, 352620.4062, 1e-4 * 352620.4062);
   EXPECT_NEAR(report.depth_m, 25, 2 * fall_m);
-}
-
-TEST(Pressure, DepthIsOffByTheDensityItAssumes) {
-  const auto yaml = with_gravity(marine_world("type: pressure, assumed_density_kgpm3: 1000", "[0, 0, -100]", "[]", "",
-                                              "{water: {surface_m: 0, density_kgpm3: 1025}}"));
-  // The medium may make the water denser with depth: by less than 0.1 % at 100 m.
-  EXPECT_NEAR(test::first_truth<pressure_t>(yaml).depth_m, 102.5, 0.1);
 }
 
 TEST(Pressure, IsThatOfTheAirAboveTheWaterAndInADryWorld) {
@@ -61,11 +57,6 @@ TEST(Pressure, NoiseHasTheSpreadAskedForAndAFaultShiftsIt) {
   test.world.editor().set_fault("r1/s", fault);
   test.run_for(0.1);
   EXPECT_NEAR(reports.last().pressure_Pa - truth_Pa, 1e5, 6 * 300);
-}
-
-TEST(Pressure, RefusesAnAssumedDensityOfAir) {
-  EXPECT_THAT(test::error_of_world(marine_world("type: pressure, assumed_density_kgpm3: 1.2")),
-              testing::HasSubstr("device 's': 'assumed_density_kgpm3' must be >= 500 and <= 2000, got 1.2"));
 }
 
 }  // namespace

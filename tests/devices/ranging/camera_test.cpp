@@ -9,44 +9,14 @@
 #include "sim/base/number.hpp"
 #include "sim/image/image_file.hpp"
 #include "sim/world/world_state.hpp"
+#include "tests/devices/ranging/camera_worlds.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
 
+using namespace camera_worlds;
+
 using testing::HasSubstr;
-
-/// A camera in the middle of the rover, 0.5 m above the ground, looking ahead.
-std::string camera(const std::string& more = "") {
-  return "        - {name: camera, type: camera, position_m: [0, 0, 0.4]" + more + "}\n";
-}
-
-const char* wall_ahead =
-    "  - {name: wall, fixed: true, position_m: [3.1, 0, 2], parts: [{shape: box, size_m: [0.2, 20, 20]}]}\n";
-const char* small = ", width: 64, height: 48, rate_hz: 10";
-
-shoal::image_t image_of(const std::string& keys, const std::string& objects = "", double run_s = 0.2) {
-  test::TestWorld test(test::rover_world(camera(keys), objects));
-  test::Listener<shoal::image_t> images(test, "r1.camera");
-  test.run_for(run_s);
-  return images.last();
-}
-
-std::string metadata(const shoal::image_t& image, const std::string& key) {
-  for (const auto& entry : image.metadata)
-    if (entry.key == key) return {entry.value.begin(), entry.value.end()};
-  return "none";
-}
-
-std::span<const std::byte> bytes_of(const shoal::image_t& image) {
-  return std::as_bytes(std::span(image.data));
-}
-
-template <typename T>
-T value_at(const shoal::image_t& image, int column, int row) {
-  T value;
-  std::memcpy(&value, image.data.data() + row * image.row_stride + column * static_cast<int>(sizeof(T)), sizeof value);
-  return value;
-}
 
 TEST(Camera, TakesUberSimsImagesUnlessToldOtherwise) {
   test::TestWorld test(test::rover_world(camera()));
@@ -62,59 +32,6 @@ TEST(Camera, TakesUberSimsImagesUnlessToldOtherwise) {
   EXPECT_EQ(image.pixelformat, 859981650);  // RGB
   // 160 / tan(22.5 degrees)
   EXPECT_THAT(metadata(image, "optics"), HasSubstr("lens: pinhole, width: 320, height: 240, focal_px: [386.27"));
-}
-
-TEST(Camera, SeesTheDepthOfAWall) {
-  const auto raw = image_of(std::string(small) + ", image: depth", wall_ahead);
-  EXPECT_EQ(raw.pixelformat, 842221382);  // FLOAT_GRAY32
-  // The chassis frame is at x = 0; it settles by less than 5 mm.
-  EXPECT_NEAR(value_at<float>(raw, 32, 24), 3.0, 0.005);
-  EXPECT_NEAR(value_at<float>(raw, 2, 24), 3.0, 0.005);  // along the axis, not the ray
-  EXPECT_EQ(metadata(raw, "unit"), "m");
-  const auto mm = image_of(std::string(small) + ", image: depth, encoding: raw16", wall_ahead);
-  EXPECT_EQ(mm.pixelformat, 909199180);  // LE_GRAY16
-  EXPECT_NEAR(value_at<std::uint16_t>(mm, 32, 24), 3000, 5);
-  EXPECT_EQ(metadata(mm, "unit"), "mm");
-  const auto png = image_of(std::string(small) + ", image: depth, encoding: png", wall_ahead);
-  EXPECT_NEAR(*sim::decode_png16(bytes_of(png)).at(32, 24), 3000, 5);
-  const auto nothing = image_of(std::string(small) + ", image: depth, range_max_m: 2, rpy_deg: [0, -40, 0]");
-  EXPECT_EQ(value_at<float>(nothing, 32, 24), INFINITY);
-}
-
-TEST(Camera, LabelsCoverTheFaceOfABox) {
-  // A face of 1 m x 1 m at 4 m, 50 px of focal length: 12 x 12 px, around 0.5 m of height.
-  const std::string box =
-      "  - {name: box, fixed: true, position_m: [4.5, 0, 0.5], parts: [{name: b, shape: box, size_m: [1, 1, 1]}]}\n";
-  const auto image = image_of(", width: 64, height: 48, focal_px: [48], image: segmentation_vehicles", box);
-  EXPECT_EQ(image.pixelformat, 909199180);
-  EXPECT_THAT(metadata(image, "labels"), HasSubstr("1 ground\n2 box\n"));
-  int pixels = 0;
-  for (int row = 0; row < 48; ++row)
-    for (int column = 0; column < 64; ++column) pixels += value_at<std::uint16_t>(image, column, row) == 2;
-  EXPECT_NEAR(pixels, 144, 12);  // it settles by less than 5 mm, which can cost a row
-  const auto parts = image_of(std::string(small) + ", image: segmentation_parts", box);
-  EXPECT_THAT(metadata(parts, "labels"), HasSubstr("box/body/b\n"));
-}
-
-TEST(Camera, EncodingsHoldTheSameImage) {
-  const auto raw = image_of(small, wall_ahead);
-  const auto png = image_of(std::string(small) + ", encoding: png", wall_ahead);
-  EXPECT_EQ(png.pixelformat, 0x20474e50);  // `PNG `
-  const sim::Image8 from_png = sim::decode_image(bytes_of(png));
-  ASSERT_EQ(from_png.data.size(), raw.data.size());
-  EXPECT_EQ(std::memcmp(from_png.data.data(), raw.data.data(), raw.data.size()), 0);
-  const auto jpeg = image_of(std::string(small) + ", encoding: jpeg", wall_ahead);
-  EXPECT_EQ(jpeg.pixelformat, 1196444237);  // MJPEG
-  EXPECT_LT(jpeg.size, raw.size / 4);
-  const sim::Image8 from_jpeg = sim::decode_image(bytes_of(jpeg));
-  ASSERT_EQ(from_jpeg.data.size(), raw.data.size());
-  double error = 0;
-  for (std::size_t i = 0; i < raw.data.size(); ++i)
-    error += std::abs(from_jpeg.data[i] - static_cast<std::uint8_t>(raw.data[i]));
-  EXPECT_LT(error / static_cast<double>(raw.data.size()), 3);  // levels, of 255
-  const auto grey = image_of(std::string(small) + ", image: grey", wall_ahead);
-  EXPECT_EQ(grey.pixelformat, 1497715271);  // GRAY
-  EXPECT_EQ(grey.size, 64 * 48);
 }
 
 /// Mean and variance of the levels of a wall that fills the image, which is grey.
@@ -202,7 +119,6 @@ vehicles:
 }
 
 const std::string at_5_hz = ", rate_hz: 5, phase_s: 0.2, focal_px: [200]";
-const std::string labels = ", image: segmentation_vehicles";
 
 shoal::image_t image_from_a_turntable(const std::string& keys, double step_s = 0.001) {
   test::TestWorld test(turntable_world(keys, step_s));
@@ -298,37 +214,6 @@ TEST(Camera, CountsTheRaysThatTheNextStepCasts) {
   // A row each ms.
   EXPECT_EQ(rays_of(", readout_s: 0.047", 0.04), 0);
   EXPECT_EQ(rays_of(", readout_s: 0.047", 0.07), 64);
-}
-
-/// A stereo pair with a baseline of 0.12 m, at the same times; `more`: keys of the right one.
-std::string stereo_pair(const std::string& more = "") {
-  const std::string lens = ", type: camera, width: 640, height: 48, rate_hz: 10, phase_s: 0.05";
-  return "        - {name: right, position_m: [0, -0.06, 0.4], right_of: left" + lens + more +
-         "}\n        - {name: left, position_m: [0, 0.06, 0.4]" + lens + ", image: segmentation_vehicles}\n";
-}
-
-TEST(Camera, TheDisparityOfAStereoPairIsFocalLengthTimesBaselineOverDepth) {
-  for (const double depth_m : {1.5, 3.0, 8.0}) {
-    // A pole of 0.1 m ahead of the middle of both.
-    test::TestWorld test(test::rover_world(stereo_pair(labels),
-                                           "  - {name: pole, fixed: true, position_m: [" + std::to_string(depth_m) +
-                                               ", 0, 0], parts: [{shape: cylinder, radius_m: 0.05, length_m: 10}]}\n"));
-    test::Listener<shoal::image_t> lefts(test, "r1.left"), rights(test, "r1.right");
-    test.run_for(0.06);
-    const auto left = lefts.last(), right = rights.last();
-    EXPECT_EQ(left.utime, right.utime);
-    const auto column = [](const shoal::image_t& image) {
-      double sum = 0;
-      int pixels = 0;
-      for (int i = 0; i < image.width; ++i)
-        if (value_at<std::uint16_t>(image, i, 10) == 2) sum += i + 0.5, ++pixels;  // after the ground
-      return sum / pixels;
-    };
-    const double focal_px = 320 / std::tan(sim::degrees_to_radians(45) / 2);
-    EXPECT_NEAR(column(left) - column(right), focal_px * 0.12 / depth_m, 0.5) << depth_m;
-    EXPECT_EQ(metadata(left, "baseline_m"), "none");
-    EXPECT_NEAR(*sim::read_number(metadata(right, "baseline_m")), 0.12, 1e-12);
-  }
 }
 
 TEST(Camera, RefusesAStereoPairWhoseImagesDoNotFit) {

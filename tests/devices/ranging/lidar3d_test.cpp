@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "devices/ranging/lidar3d.hpp"
+
 #include <gmock/gmock.h>
 
 #include "shoal/point_cloud_t.hpp"
@@ -119,19 +121,6 @@ TEST(Lidar3d, NoiseIsAlongTheBeam) {
   ASSERT_GT(count, 5000);
   EXPECT_NEAR(mean, 0, 4 * 0.05 / std::sqrt(count));
   EXPECT_NEAR(std, 0.05, 4 * 0.05 / std::sqrt(2 * count));
-}
-
-TEST(Lidar3d, PresetsHaveTheRingsAndColumnsOfTheirDataSheets) {
-  const std::string room =
-      "  - {name: shell, fixed: true, parts: [{shape: sphere, radius_m: 20, material: nothing_special}]}\n";
-  for (const auto& [preset, beams] : {std::pair{"vlp16", 16 * 1800}, {"os1_32", 32 * 1024}}) {
-    std::string yaml = ranging_world(std::string("type: lidar3d, preset: ") + preset, room);
-    yaml.replace(yaml.find("rate_hz: 100"), 12, "rate_hz: 10");
-    test::TestWorld test(yaml);
-    test::Listener<point_cloud_t> clouds(test, "r1.s");
-    test.run_for(0.2);
-    EXPECT_EQ(clouds.last().count, beams);  // from inside a solid, every beam ends where it leaves it
-  }
 }
 
 TEST(Lidar3d, ChangesItsRateWhileItRuns) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "devices/ranging/sonar.hpp"
+
 #include <gmock/gmock.h>
 
 #include "shoal/sonar_range_t.hpp"
@@ -26,34 +28,6 @@ TEST(Sonar, ReceivesTheNearestPointOfAWallOffItsAxis) {
   EXPECT_NEAR(range(50), 5 / std::cos(edge_rad), 5 / std::cos(edge_rad) * std::tan(edge_rad) * 0.015);
 }
 
-TEST(Sonar, LevelsFollowTheSonarEquation) {
-  const auto level = [](double wall_m, const std::string& more) {
-    return first_truth<sonar_range_t>(
-               ranging_world("type: sonar, beam_deg: 4, rays: 2000, source_level_dB: 210" + more, wall_at(wall_m)))
-        .strength_dB;
-  };
-  // Lambert -27 dB, head-on; the mean of the two-way Gaussian lobe over its -3 dB cone is (1 - 1/4) / (2 ln 2).
-  const double solid_angle_sr = 2 * std::numbers::pi * (1 - std::cos(degrees_to_radians(2)));
-  const double beam_dB = 10 * std::log10(solid_angle_sr * 0.75 / (2 * std::log(2.0)));
-  EXPECT_NEAR(level(10, ""), 210 - 27 + beam_dB - 20, 0.01);
-  EXPECT_NEAR(level(10, "") - level(40, ""), 20 * std::log10(4.0), 0.01);  // the wall fills the beam
-  EXPECT_NEAR(level(10, "") - level(10, ", absorption_dBpkm: 50"), 2 * 50 * 0.01, 1e-3);
-  EXPECT_NEAR(level(10, ", tvg: 40log, absorption_dBpkm: 50"), level(10, "") + 40, 1e-2);
-}
-
-TEST(Sonar, WhatIsSmallerThanItsBeamFallsWithTheFourthPower) {
-  // A plate of 0.2 m; the beam of 10 deg is 1.7 m wide at 10 m.
-  const auto level = [](double x_m) {
-    return first_truth<sonar_range_t>(ranging_world("type: sonar, beam_deg: 10, rays: 10000",
-                                                    "  - {name: plate, fixed: true, position_m: [" +
-                                                        std::to_string(x_m + 0.05) +
-                                                        ", 0, 0], parts: [{shape: box, size_m: [0.1, 0.2, 0.2]}]}\n"))
-        .strength_dB;
-  };
-  // Some 110 and 28 rays on the plate: a few of them decide at its edges.
-  EXPECT_NEAR(level(10) - level(20), 40 * std::log10(2.0), 1);
-}
-
 TEST(Sonar, ReceivesNothingBelowItsThresholdAndOutOfRange) {
   const auto deaf = first_truth<sonar_range_t>(ranging_world("type: sonar, threshold_dB: 190", wall_at(5)));
   EXPECT_EQ(deaf.valid, 0);
@@ -61,21 +35,6 @@ TEST(Sonar, ReceivesNothingBelowItsThresholdAndOutOfRange) {
   EXPECT_EQ(first_truth<sonar_range_t>(ranging_world("type: sonar, range_max_m: 4", wall_at(5))).valid, 0);
   EXPECT_EQ(first_truth<sonar_range_t>(ranging_world("type: sonar, range_min_m: 20", wall_at(5))).valid, 0);
   EXPECT_EQ(first_truth<sonar_range_t>(ranging_world("type: sonar", wall_at(5))).valid, 1);
-}
-
-TEST(Sonar, SpeckleHasARayleighAmplitude) {
-  test::TestWorld test(ranging_world("type: sonar", wall_at(5)));
-  test::Listener<sonar_range_t> reports(test, "r1.s"), truths(test, "r1.s.truth");
-  test.run_for(50);
-  const double truth_dB = truths.last().strength_dB;
-  std::vector<double> amplitudes;
-  for (const auto& report : reports.take_all())
-    if (report.valid) amplitudes.push_back(std::pow(10, (report.strength_dB - truth_dB) / 20));
-  const auto [mean, std, count] = test::statistics(amplitudes);
-  ASSERT_GT(count, 4990);
-  // mean / standard deviation = sqrt(pi / (4 - pi)) = 1.913; 4 standard deviations of the estimate are 0.08.
-  EXPECT_NEAR(mean / std, 1.913, 0.08);
-  EXPECT_NEAR(mean, std::sqrt(std::numbers::pi) / 2, 4 * 0.463 / std::sqrt(count));
 }
 
 TEST(Sonar, NoiseHasTheMeanAndTheSpreadAskedFor) {
@@ -97,16 +56,6 @@ TEST(Sonar, RangesAreRoundedToItsResolution) {
   const auto report =
       test::first_report<sonar_range_t>(ranging_world("type: sonar, resolution_m: 0.25, speckle: false", wall_at(5.1)));
   EXPECT_EQ(report.range_m, 5);
-}
-
-TEST(Sonar, SoundPassesWhatLetsItThrough) {
-  const std::string net =
-      "  - {name: net, fixed: true, position_m: [2, 0, 0], parts: [{shape: box, size_m: [0.1, 9, 9], material: "
-      "net}]}\n";
-  EXPECT_NEAR(first_truth<sonar_range_t>(
-                  ranging_world("type: sonar", net + wall_at(5), ", {name: net, transparent_to: [sound]}"))
-                  .range_m,
-              5, 1e-2);
 }
 
 TEST(Sonar, SaysWhatIsWrongWithItsParameters) {

@@ -1,27 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "devices/sound_positioning/lbl.hpp"
+
 #include <gmock/gmock.h>
 
 #include <cmath>
 
 #include "shoal/lbl_t.hpp"
-#include "sim/world/world_editor.hpp"
 #include "tests/devices/ranging/ranging_fixture.hpp"
-#include "tests/devices/sound_positioning/acoustic_probe.hpp"
+#include "tests/devices/sound_positioning/lbl_fixture.hpp"
+#include "tests/devices/world_fixture.hpp"
 
 namespace {
 
-using shoal::lbl_t;
+using namespace lbl_fixture;
 
-std::string lbl_device(const std::string& keys = "") {
-  return "{name: s, truth: true, rate_hz: 100, phase_s: 0, type: lbl" + keys + "}";
-}
-std::string mooring(const std::string& name, const std::string& position_m, const std::string& more = "",
-                    const std::string& network = "lbl") {
-  return test::float_at(name, position_m, "{name: t, type: transponder, network: " + network + more + "}");
-}
-std::string lbl_world(const std::string& keys, const std::string& others) {
-  return test::sound_world(test::float_at("r1", "[0, 0, -10]", lbl_device(keys)) + others);
-}
+using shoal::lbl_t;
 
 TEST(Lbl, RequestsANetOfTransponders) {
   test::TestWorld test(lbl_world("", mooring("a", "[300, 400, -10]", ", turnaround_s: 0.1") +
@@ -71,17 +64,6 @@ TEST(Lbl, RangesThroughAThermoclineAreLongUnlessTheWaterIsKnown) {
       "sound_speed_mps: 1486.68}]}",
       truth);
   EXPECT_NEAR(faster.range_m[0] - truth.range_m[0], 0.67, 0.05);
-}
-
-TEST(Lbl, ReportsAsSoonAsAllHaveAnsweredAndPingsAgainAfterItsPeriod) {
-  test::TestWorld test(lbl_world(", ping_period_s: 2", mooring("a", "[750, 0, -10]", ", turnaround_s: 0.1")));
-  test::Listener<lbl_t> reports(test, "r1.s");
-  test.run_for(3.5);
-  const auto all = reports.take_all();
-  ASSERT_EQ(all.size(), 2u);
-  // Ping at 10 ms, 0.5 s there, turnaround, 0.5 s back, 10 ms of answer: at a sample of 10 ms.
-  EXPECT_EQ(all[0].utime - test.world.epoch_us(), 1'120'000);
-  EXPECT_EQ(all[1].utime - all[0].utime, 2'000'000);
 }
 
 TEST(Lbl, ATransponderThatLeavesOrIsBlockedIsNaN) {

@@ -1,28 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "devices/sound_positioning/range_beacon.hpp"
+
 #include <gmock/gmock.h>
 
 #include "shoal/range_beacon_t.hpp"
 #include "sim/world/world_editor.hpp"
+#include "tests/devices/sound_positioning/range_beacon_fixture.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {
 
+using namespace range_beacon_fixture;
+
 using testing::ElementsAre;
 
-/// Boxes without weight: r1 at the origin, and others.
-std::string boxes(const std::string& r1, const std::string& others = "", const std::string& objects = "") {
-  return "shoal: 1\nphysics: {step_s: 0.01, gravity_mps2: 0}\nobjects: [" + objects + "]\nvehicles:\n" +
-         "  - {name: r1, position_m: [0, 0, 0], model: {shoal: 1, vehicle: box, bodies: [{name: hull, parts: [{shape: "
-         "box, size_m: [0.2, 0.2, 0.2], mass_kg: 1}]}], devices: [{name: b, type: range_beacon, rate_hz: 100, phase_s: "
-         "0, truth: true" +
-         r1 + "}]}}\n" + others;
-}
 std::string other(const std::string& name, const std::string& position_m, const std::string& more = "") {
   return "  - {name: " + name + ", position_m: " + position_m +
          ", model: {shoal: 1, vehicle: box, bodies: [{name: hull, parts: [{shape: box, size_m: [0.2, 0.2, 0.2], "
          "mass_kg: 1}]}], devices: [{name: b, type: range_beacon, beacon_only: true" +
          more + "}]}}\n";
 }
+
 const char* wall = "{name: wall, fixed: true, position_m: [2, 0, 0], parts: [{shape: box, size_m: [0.1, 2, 2]}]}";
 
 TEST(RangeBeacon, MeasuresRangeAndDirectionByThe345Triangle) {
@@ -73,25 +71,6 @@ TEST(RangeBeacon, AWallHidesWhatIsBehindIt) {
   test::Listener<shoal::range_beacon_t> all(through, "r1.b");
   through.run_for(0.5);
   EXPECT_THAT(all.last().beacon, ElementsAre("on_wall", "r2/b", "r3/b"));
-}
-
-TEST(RangeBeacon, TheMediumDecidesWhatIsReceived) {
-  const auto received = [](const std::string& through, const std::string& medium) {
-    test::TestWorld test("medium: " + medium + "\n" +
-                         boxes(", beacons: [{name: wet, position_m: [0, 5, -1]}, {name: dry, position_m: [0, 5, 1]}]"
-                               ", through: " +
-                               through));
-    test::Listener<shoal::range_beacon_t> reports(test, "r1.b");
-    test.run_for(0.1);
-    return reports.last().beacon;
-  };
-  const std::string above = "{water: {surface_m: -0.5}}", below = "{water: {surface_m: 0.5}}";
-  EXPECT_THAT(received("radio", above), ElementsAre("dry"));
-  EXPECT_THAT(received("radio", below), ElementsAre());
-  EXPECT_THAT(received("acoustic", above), ElementsAre());
-  EXPECT_THAT(received("acoustic", below), ElementsAre("wet"));
-  EXPECT_THAT(received("any", below), ElementsAre("wet", "dry"));
-  EXPECT_THAT(received("radio", "{}"), ElementsAre("wet", "dry"));
 }
 
 TEST(RangeBeacon, BeaconsComeAndGoWithTheirVehicles) {

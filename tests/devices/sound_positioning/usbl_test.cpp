@@ -1,27 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "devices/sound_positioning/usbl.hpp"
+
 #include <gmock/gmock.h>
 
-#include "devices/sound_positioning/usbl_array.hpp"
 #include "shoal/transponder_t.hpp"
 #include "shoal/usbl_t.hpp"
+#include "sim/base/math.hpp"
 #include "sim/world/world_editor.hpp"
 #include "tests/devices/navigation/immersed_sensor_fixture.hpp"
+#include "tests/devices/sound_positioning/usbl_worlds.hpp"
 
 namespace {
 
+using namespace usbl_worlds;
+
 using shoal::usbl_t;
 using test::marine_world;
-
-std::string transponder(const std::string& name, const std::string& position_m, const std::string& more = "") {
-  return "  - {name: " + name + ", position_m: " + position_m +
-         ", model: {shoal: 1, vehicle: box, bodies: [{name: hull, hydrodynamics: {model: none}, parts: [{shape: box, "
-         "size_m: [0.2, 0.2, 0.2], mass_kg: 1}]}], devices: [{name: t, type: transponder, rate_hz: 10" +
-         more + "}]}}\n";
-}
-std::string usbl_world(const std::string& keys, const std::string& others, const std::string& objects = "[]",
-                       const std::string& medium = "{water: {surface_m: 0}}") {
-  return marine_world("type: usbl" + keys, "[0, 0, -10]", objects, others, medium);
-}
 
 TEST(Usbl, MeasuresRangeAndDirectionByThe345Triangle) {
   test::TestWorld test(usbl_world("", transponder("deep", "[30, 40, -130]") + transponder("air", "[30, 0, 1]") +
@@ -60,36 +54,6 @@ TEST(Usbl, AnswersTakeTheTimeOfSoundThereAndBack) {
   EXPECT_NEAR(first_s, 0.01 + received_s + 0.005, 0.0051);
   // The next ping is sent when the answer is in: at the same sample.
   EXPECT_NEAR(static_cast<double>(all[1].utime - all[0].utime) * 1e-6, received_s + 0.005, 0.0051);
-}
-
-TEST(Usbl, ThroughAThermoclineTheSenderAppearsElsewhereUnlessTheWaterIsKnown) {
-  const std::string water =
-      "{profile: [{depth_m: 0, sound_speed_mps: 1515.80}, {depth_m: 20, sound_speed_mps: 1516.12}, "
-      "{depth_m: 40, sound_speed_mps: 1483.07}, {depth_m: 200, sound_speed_mps: 1485.68}]}";
-  const auto fix_with = [&](const std::string& keys, usbl_t& truth) {
-    test::TestWorld test(usbl_world(", range_max_m: 2000, ping_period_s: 4" + keys, transponder("t", "[1000, 0, -50]"),
-                                    "[]", "{water: " + water + "}"));
-    test::Listener<usbl_t> fixes(test, "r1.s"), truths(test, "r1.s.truth");
-    test.run_for(2.5);
-    truth = truths.last();
-    return fixes.last();
-  };
-  usbl_t truth{};
-  const usbl_t plain = fix_with("", truth);
-  EXPECT_NEAR(truth.position_m[2], -40, 1e-6);
-  // The ray leaves almost horizontally, where the straight line falls by 2.3 degrees.
-  EXPECT_GT(plain.elevation_rad, truth.elevation_rad + 0.005);
-  EXPECT_GT(plain.range_m, truth.range_m + 3);
-  const usbl_t known = fix_with(", assumed_water: " + water, truth);
-  EXPECT_NEAR(known.range_m, truth.range_m, 0.05);
-  EXPECT_NEAR(known.elevation_rad, truth.elevation_rad, 1e-4);
-  EXPECT_NEAR(known.azimuth_rad, truth.azimuth_rad, 1e-9);
-  // Water that is known with an error.
-  const usbl_t warmer = fix_with(
-      ", assumed_water: {profile: [{depth_m: 0, sound_speed_mps: 1515.80}, {depth_m: 25, "
-      "sound_speed_mps: 1516.2}, {depth_m: 40, sound_speed_mps: 1483.07}]}",
-      truth);
-  EXPECT_GT(std::abs(warmer.elevation_rad - truth.elevation_rad), 1e-3);
 }
 
 TEST(Usbl, BothMayMoveWhileTheSoundIsUnderWay) {
@@ -160,38 +124,6 @@ TEST(Usbl, WorksUnderWaterOnly) {
   EXPECT_EQ(fixes.take_all().size(), 0u);
   EXPECT_THAT(test::error_of_world(marine_world("type: usbl", "[0, 0, -10]", "[]", other, "{}")),
               testing::HasSubstr("vehicle 'r1': device 's': a device of type 'usbl' needs water"));
-}
-
-std::vector<std::string> first_targets(const std::string& yaml, double within_s = 0.5) {
-  test::TestWorld test(yaml);
-  test::Listener<usbl_t> fixes(test, "r1.s");
-  test.run_for(within_s);
-  std::vector<std::string> names;
-  for (const auto& fix : fixes.take_all()) names.push_back(fix.target);
-  return names;
-}
-
-TEST(Transponder, SeveralAnswerAtATimeUnlessTheyShareABand) {
-  const auto ring = [](const std::string& more) {
-    return transponder("e", "[100, 0, -10]", more) + transponder("n", "[0, 100, -10]", more) +
-           transponder("w", "[-100, 0, -10]", more) + transponder("s", "[0, -100, -10]", more);
-  };
-  EXPECT_THAT(first_targets(usbl_world("", ring(""))), testing::UnorderedElementsAre("e/t", "n/t", "w/t", "s/t"));
-  // All answers come at once: the receiver takes one.
-  EXPECT_EQ(first_targets(usbl_world("", ring(", answer_frequency_Hz: 30000"))).size(), 1u);
-}
-
-TEST(Transponder, ReceivesPingsOnItsFrequencyThatAreLoudEnough) {
-  const auto received = [](const std::string& keys, const std::string& more) {
-    return !first_targets(usbl_world(keys, transponder("t", "[100, 0, -10]", more))).empty();
-  };
-  EXPECT_TRUE(received(", frequency_Hz: 20000", ", frequency_Hz: 20000"));
-  EXPECT_FALSE(received(", frequency_Hz: 20000", ""));
-  EXPECT_FALSE(received("", ", code: A, network: lbl"));
-  // 100 m take 15 log10(100) = 30 dB and 0.6 dB; the noise at 26 kHz in 1 kHz is some 60 dB, and 6 dB are needed.
-  EXPECT_FALSE(received(", source_level_dB: 80", ""));
-  EXPECT_FALSE(received("", ", source_level_dB: 80"));
-  EXPECT_TRUE(received(", source_level_dB: 120", ", source_level_dB: 120"));
 }
 
 TEST(Usbl, ErrorsHaveTheSpreadAskedFor) {
@@ -273,28 +205,6 @@ TEST(Usbl, TheErrorsOfAnArrayGrowAsTheSignalGetsWeaker) {
   EXPECT_NEAR(across_m(130) / across_m(150), 10, 4 * 0.33);
 }
 
-TEST(UsblArray, HasTheErrorOfTwoPhasesInNoise) {
-  devices::UsblArrayParams array;
-  array.baseline_m = 0.2;
-  // 20 dB and 10 independent samples: phases of 1 / sqrt(2 * 1000) rad each, sqrt(2) times that for their difference.
-  EXPECT_NEAR(array.cosine_std({sim::PowerRatio(100), 10, 0.05}),
-              0.05 / (2 * M_PI * 0.2) * std::sqrt(1 / 1000.0 * (1 + 1 / 200.0)), 1e-12);
-  array.phase_std_rad = 0.3;
-  EXPECT_NEAR(array.cosine_std({sim::PowerRatio(1e12), 10, 0.05}), 0.05 / (2 * M_PI * 0.2) * 0.3, 1e-9);
-}
-
-TEST(UsblArray, DirectionsTurnAsOnASphere) {
-  const sim::Vector3d level = devices::turned(0.3, 0, 0.1, 0);
-  EXPECT_NEAR(std::atan2(level.y(), level.x()), 0.4, 1e-12);
-  EXPECT_NEAR(level.z(), 0, 1e-12);
-  const sim::Vector3d below = devices::turned(0, -M_PI / 2, 0.1, 0);
-  EXPECT_NEAR((below - sim::Vector3d(0, std::sin(0.1), -std::cos(0.1))).norm(), 0, 1e-12);
-  EXPECT_NEAR(devices::turned(1, -1, 0.2, 0.3).norm(), 1, 1e-12);
-  // Beyond the plane of the array: in it.  The side is known.
-  EXPECT_EQ(devices::with_cosine_errors({1, 0, 0}, 0.01, 0), sim::Vector3d(1, 0, 0));
-  EXPECT_NEAR(devices::with_cosine_errors({0, 0, -1}, 0.6, 0).z(), -0.8, 1e-12);
-}
-
 TEST(Usbl, TranspondersComeAndGoWithTheirVehicles) {
   test::TestWorld test(usbl_world(", ping_period_s: 0.1", transponder("t", "[100, 0, -10]")));
   test::Listener<usbl_t> fixes(test, "r1.s");
@@ -305,18 +215,6 @@ TEST(Usbl, TranspondersComeAndGoWithTheirVehicles) {
   fixes.take_all();
   test.run_for(0.5);
   EXPECT_EQ(fixes.take_all().size(), 0u);
-}
-
-TEST(Transponder, ASilentOneDoesNotAnswer) {
-  // It waits for answers from as far as its range, 0.2 s.
-  test::TestWorld test(usbl_world(", ping_period_s: 0.1, range_max_m: 120", transponder("t", "[100, 0, -10]")));
-  test::Listener<usbl_t> fixes(test, "r1.s");
-  test.world.editor().set_fault("t/t", {});  // silent
-  test.run_for(0.5);
-  EXPECT_EQ(fixes.take_all().size(), 0u);
-  test.world.editor().clear_faults("t/t");
-  test.run_for(0.5);
-  EXPECT_GE(fixes.take_all().size(), 2u);
 }
 
 TEST(Usbl, SaysWhatIsWrongWithItsParameters) {

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <filesystem>
 
 #include "bridges/control/spawned_vehicles.hpp"
 #include "experiment/drive/drive_error.hpp"
@@ -26,7 +25,6 @@ namespace {
 
 using experiment::DriveKind;
 using testing::ElementsAre;
-using testing::HasSubstr;
 
 /// A vehicle with these devices: name and type.
 experiment::DrivenVehicle vehicle(const std::vector<std::pair<std::string, std::string>>& devices) {
@@ -47,15 +45,6 @@ Message only(const std::vector<experiment::DriveCommand>& commands, const std::s
   EXPECT_EQ(commands.size(), 1u);
   EXPECT_EQ(commands.at(0).channel, channel);
   return shoal::decode<Message>(commands.at(0).payload, shoal::Finite::any);
-}
-
-std::string profile_error(const std::string& text) {
-  try {
-    experiment::parse_drive_profile(text, "pad.yaml");
-  } catch (const sim::ConfigError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 TEST(DriveMapping, CommandsATwistToADrive) {
@@ -210,18 +199,6 @@ TEST(DriveMapping, SaysWhatIsPossibleInstead) {
   EXPECT_EQ(error(vehicle({{"drive", "skid_steer"}}), DriveKind::tilt),
             "vehicle 'v' cannot be driven by 'tilt', only by: twist, thrust");
   EXPECT_EQ(error(vehicle({{"lidar", "lidar"}}), {}), "vehicle 'v' has no devices by which it can be driven");
-}
-
-TEST(DriveProfile, SaysLineColumnAndRule) {
-  EXPECT_THAT(profile_error("rate_hz: 1\n"), HasSubstr("pad.yaml:1:10: drive profile: 'rate_hz' must be >= 5"));
-  EXPECT_THAT(profile_error("hold_s: 0.5\n"), HasSubstr("pad.yaml:1:9: drive profile: 'hold_s' must be"));
-  EXPECT_THAT(profile_error("keys:\n  steps: [{key: w, axis: up}]\n"), HasSubstr("pad.yaml:2:26:"));
-  EXPECT_THAT(profile_error("keys:\n  steps: [{key: space, axis: turn}]\n"), HasSubstr("key 'space' has two meanings"));
-  EXPECT_THAT(profile_error("keys: {hold: control}\n"), HasSubstr("'hold' must be one character"));
-  EXPECT_THAT(profile_error("gamepad: {axes: [{code: 1, axis: turn, low: 5, high: 5}]}\n"),
-              HasSubstr("'high' must be above 'low'"));
-  EXPECT_THAT(profile_error("spede: 1\n"), HasSubstr("unknown key 'spede'"));
-  EXPECT_THAT(profile_error("crafts: [{name: a}]\n"), HasSubstr("missing key 'devices'"));
 }
 
 }  // namespace

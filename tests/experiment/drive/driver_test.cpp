@@ -10,6 +10,7 @@
 namespace {
 
 using namespace std::chrono_literals;
+
 using Clock = experiment::Driver::Clock;
 
 class DriverTest : public testing::Test {
@@ -82,17 +83,6 @@ TEST_F(DriverTest, ATappedKeyMovesForAFifthOfASecondOnly) {
     EXPECT_NE(speed_at(ms * 1ms), 0) << ms;
   }
   EXPECT_EQ(speed_at(1200ms), 0);
-}
-
-TEST(DriveKeys, StepsStopAtFullDeflectionAndComeBackToZero) {
-  experiment::DriveKeys keys(experiment::read_drive_profile("").keys);
-  for (int i = 0; i < 9; ++i) keys.press("w");
-  EXPECT_EQ(keys.values().at("forward"), 1);
-  for (int i = 0; i < 4; ++i) keys.press("s");
-  EXPECT_EQ(keys.values().at("forward"), 0);
-  keys.press("a");
-  EXPECT_EQ(keys.press("x"), experiment::DriveKeys::Effect::none);
-  EXPECT_TRUE(keys.values().empty());
 }
 
 }  // namespace

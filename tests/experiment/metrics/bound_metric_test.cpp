@@ -4,53 +4,14 @@
 #include <cmath>
 
 #include "experiment/score/scoring.hpp"
-#include "shoal/pose_t.hpp"
 #include "tests/devices/comms/modem_fixture.hpp"
+#include "tests/experiment/metrics/bounded_worlds.hpp"
 
 namespace {
 
+using namespace bounded_worlds;
+
 using testing::HasSubstr;
-
-/// A submarine that starts with 10 m, and 100 m east of it a boat with GPS of 0.5 m; both stand still.
-std::string bounded_world(const std::string& metrics) {
-  return test::modem_sea(
-      {{"auv", "[0, 0, -10]",
-        "{name: dvl, type: dvl, scale_std: 0.03}, {name: modem, type: acoustic_modem}, "
-        "{name: ahrs, type: ahrs, heading_noise: {bias_std: 0.05, gauss_markov_std: 0.02}}",
-        "clock: {offset_s: 0.001}"},
-       {"boat", "[100, 0, 0]",
-        "{name: gps, type: gps, position_m: [0, 0, 1], rate_hz: 1, phase_s: 0, horizontal_noise: {gaussian_std: 0.5}}, "
-        "{name: modem, type: acoustic_modem, position_m: [0, 0, -1]}",
-        ""},
-       {"rock", "[0, 50, -10]", "", ""}},
-      "metrics:\n" + metrics);
-}
-
-constexpr const char* bound_with_clock =
-    "  - {name: b, type: bound, vehicle: auv, start_std_m: 10, from_s: 1, known: [clock]}\n";
-
-struct BoundedWorld {
-  explicit BoundedWorld(const std::string& metrics) : test(bounded_world(metrics)), scoring(test.world) {}
-
-  void run_for(double time_s) {
-    const sim::Time end = test.world.now() + sim::from_seconds(time_s);
-    while (test.world.now() < end) {
-      test.world.step();
-      scoring.after_step();
-    }
-  }
-  /// Sends packets by the boat, one every 5 s, and waits for them.
-  void send(int packets) {
-    for (int i = 0; i < packets; ++i) {
-      test.send("boat.modem.cmd", test::bytes_to("here"));
-      run_for(5);
-    }
-  }
-  double figure(const std::string& name) const { return scoring.figures().at(name); }
-
-  test::TestWorld test;
-  experiment::Scoring scoring;
-};
 
 TEST(BoundMetric, OfRangesIsThatOfTheirFixes) {
   BoundedWorld world(bound_with_clock);
@@ -127,21 +88,6 @@ TEST(BoundMetric, CountsSightsByUSBLOfItsScope) {
   EXPECT_LT(figures.at("all.final_m"), 0.5);
 }
 
-TEST(BoundRatio, DividesTheErrorOfAnEstimate) {
-  BoundedWorld world(std::string(bound_with_clock) +
-                     "  - {name: e, type: position_error, vehicle: auv, channel: est, from_s: 1}\n"
-                     "  - {name: r, type: bound_ratio, metric: e, bound: b}\n");
-  world.run_for(2);
-  EXPECT_TRUE(std::isnan(world.figure("r.ratio")));
-  shoal::pose_t pose{};
-  pose.utime = world.test.world.epoch_us() + world.test.world.now().count();
-  pose.pos[1] = 7;
-  world.test.send("est", pose);
-  world.run_for(1);
-  EXPECT_NEAR(world.figure("r.ratio"), world.figure("e.rms_m") / world.figure("b.rms_m"), 1e-12);
-  EXPECT_NEAR(world.figure("r.ratio"), 7 / std::sqrt(200.0), 1e-3);
-}
-
 TEST(BoundMetric, GoesBackToWhatWasSaved) {
   BoundedWorld world(bound_with_clock);
   world.run_for(2);
@@ -169,23 +115,6 @@ TEST(BoundMetric, RefusesWhatItCannotBound) {
               HasSubstr("'known' has the unknown error 'clok'"));
   EXPECT_THAT(error("  - {name: b, type: bound, vehicle: auv, team: [aux]}\n"), HasSubstr("aux"));
   EXPECT_EQ(error(bound_with_clock), "");
-}
-
-TEST(BoundRatio, RefusesErrorsOfAnotherPosition) {
-  const auto error = [](const std::string& keys) {
-    return test::error_of_world(bounded_world(std::string(bound_with_clock) +
-                                              "  - {name: e, type: position_error, channel: est, " + keys +
-                                              "}\n"
-                                              "  - {name: r, type: bound_ratio, metric: e, bound: b}\n"));
-  };
-  EXPECT_EQ(error("vehicle: auv, from_s: 1"), "");
-  EXPECT_THAT(error("vehicle: boat, from_s: 1"),
-              HasSubstr("metric 'r': 'e' and 'b' must be of the same vehicle, got 'boat' and 'auv'"));
-  EXPECT_THAT(error("vehicle: auv"), HasSubstr("metric 'r': 'e' and 'b' must have the same 'from_s', got 0 and 1"));
-  EXPECT_THAT(error("vehicle: auv, from_s: 1, until_s: 2"),
-              HasSubstr("metric 'r': 'e' must not have 'until_s', got 2: the bound is until the end"));
-  EXPECT_THAT(error("vehicle: auv, from_s: 1, dimensions: 3"),
-              HasSubstr("metric 'r': 'e' must have 2 dimensions: the bound is horizontal"));
 }
 
 }  // namespace

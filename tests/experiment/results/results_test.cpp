@@ -4,45 +4,25 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "experiment/results/earlier_run.hpp"
 #include "experiment/run/runner.hpp"
-#include "messages/yaml/message_writer.hpp"
+#include "sim/config/config_node.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
-#include "tests/devices/world_fixture.hpp"
+#include "tests/experiment/results/quiet_runs.hpp"
 
 namespace {
 
-namespace fs = std::filesystem;
+using namespace quiet_runs;
 
 using lcm_test::ScratchFolder;
 
-std::string text_of_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 std::size_t lines_in(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
-}
-
-sim::LoadedWorld small_world(const std::string& more = "") {
-  return sim::load_world_text(
-      test::rover_world("        - {name: lidar, type: lidar}\n", "", "",
-                        "name: small\nrun: {duration_s: 0.5, track_rate_hz: 10, seed: 7}\n" + more),
-      "small.yaml");
-}
-
-experiment::RunOptions quiet_run() {
-  experiment::RunOptions options;
-  options.bus = "none";
-  options.quiet = true;
-  return options;
 }
 
 TEST(RunWorld, EndsByAnEventWithItsVerdictAndTheRecordsOfZones) {
@@ -252,67 +232,6 @@ TEST(Results, AreLeftByARun) {
   EXPECT_NO_THROW(sim::load_world(options.results + "/world.yaml"));
 }
 
-TEST(Results, ShowErrorsWithWhatTheEstimateSaysOfThem) {
-  const ScratchFolder folder;
-  sim::LoadOptions load;
-  load.encode_message = shoal::encode_own_message;
-  // Always 3 m east and 4 m north of a rover that stands: with P = diag(9, 16) the NEES is 1 + 1.
-  const auto loaded = sim::load_world_text(
-      test::rover_world("        - {name: lidar, type: lidar}\n", "", "",
-                        "run: {duration_s: 1}\n"
-                        "events:\n"
-                        "  - {name: think, every: 0.1, do: [{publish: {channel: est, type: shoal.estimate_t, value: "
-                        "{position_m: [3, 4, 0], covariance_m2: [9, 0, 0, 0, 16, 0, 0, 0, 1]}}}]}\n"
-                        "metrics:\n"
-                        "  - {name: e, type: position_error, vehicle: r1, channel: est}\n"
-                        "  - {name: c, type: consistency, vehicle: r1, channel: est}\n"),
-      "small.yaml", load);
-  auto options = quiet_run();
-  options.results = folder.file("results");
-  const experiment::Summary summary = experiment::run_world(loaded, options);
-  EXPECT_EQ(summary.exit_code, 0) << summary.error;
-  EXPECT_NEAR(summary.metrics.at("e.rms_m"), 5, 1e-3);  // a rover that stands may creep
-  EXPECT_NEAR(summary.metrics.at("c.nees_mean"), 2, 1e-3);
-  const std::string errors = text_of_file(options.results + "/errors.csv");
-  EXPECT_THAT(errors, testing::StartsWith("time_s,metric,error_m,estimate_x_m,estimate_y_m,truth_x_m,truth_y_m,"
-                                          "estimate_z_m,truth_z_m,travelled_m,sigma_m,nees\n"));
-  EXPECT_THAT(errors, testing::HasSubstr(",5.000000,"));  // sigma: the root of 9 + 16
-  EXPECT_THAT(errors, testing::HasSubstr(",2.000"));
-  for (const char* image : {"tracks.png", "errors.png", "nees.png"})
-    EXPECT_THAT(text_of_file(options.results + "/" + image), testing::StartsWith("\x89PNG")) << image;
-  options.plots = false;
-  EXPECT_EQ(experiment::run_world(loaded, options).exit_code, 0);
-  EXPECT_FALSE(fs::exists(options.results + "/nees.png"));
-}
-
-TEST(Results, ErrorsThatAreVeryDifferentHaveALogarithmicAxis) {
-  for (const bool very : {true, false}) {
-    const ScratchFolder folder;
-    sim::LoadOptions load;
-    load.encode_message = shoal::encode_own_message;
-    const auto loaded = sim::load_world_text(
-        test::rover_world(
-            "        - {name: lidar, type: lidar}\n", "", "",
-            "run: {duration_s: 1}\n"
-            "events:\n"
-            "  - {name: near, every: 0.1, do: [{publish: {channel: near, type: shoal.pose_t, value: {pos: [1, 0, "
-            "0]}}}]}\n"
-            "  - {name: far, every: 0.1, do: [{publish: {channel: far, type: shoal.pose_t, value: {pos: [" +
-                std::string(very ? "6" : "4") +
-                ", 0, 0]}}}]}\n"
-                "metrics:\n"
-                "  - {name: n, type: position_error, vehicle: r1, channel: near}\n"
-                "  - {name: f, type: position_error, vehicle: r1, channel: far}\n"),
-        "small.yaml", load);
-    auto options = quiet_run();
-    options.results = folder.file("results");
-    experiment::run_world(loaded, options);
-    const std::string script = text_of_file(options.results + "/plot.gp");
-    EXPECT_EQ(script.find("\nset logscale y") != script.npos, very) << script;
-    EXPECT_THAT(text_of_file(options.results + "/errors.png"), testing::StartsWith("\x89PNG"));
-  }
-}
-
 TEST(Results, AreLeftByARunThatFailed) {
   const ScratchFolder folder;
   const auto loaded = small_world(
@@ -326,27 +245,6 @@ TEST(Results, AreLeftByARunThatFailed) {
   EXPECT_EQ(json["passed"], false);
 }
 
-TEST(Results, NameWhatCannotBeWritten) {
-  const auto loaded = small_world();
-  auto options = quiet_run();
-  options.results = "/proc/nowhere";
-  const experiment::Summary summary = experiment::run_world(loaded, options);
-  EXPECT_EQ(summary.exit_code, 4);
-  EXPECT_THAT(summary.error, testing::HasSubstr("cannot write results to '/proc/nowhere"));
-}
-
-TEST(Results, NamesInAWorldAreNoCommands) {
-  const ScratchFolder folder;
-  const std::string made = folder.file("made");
-  auto loaded = small_world();
-  loaded.config.name = "x'; system \"touch " + made + "\"; set title '\n!touch " + made + "\n`touch " + made + "`";
-  auto options = quiet_run();
-  options.results = folder.file("results");
-  EXPECT_EQ(experiment::run_world(loaded, options).exit_code, 0);
-  EXPECT_FALSE(fs::exists(made));
-  EXPECT_THAT(text_of_file(options.results + "/tracks.png"), testing::StartsWith("\x89PNG"));
-}
-
 TEST(Results, ReportARunThatCouldNotBeBuilt) {
   const ScratchFolder folder;
   const auto loaded = small_world();
@@ -358,91 +256,6 @@ TEST(Results, ReportARunThatCouldNotBeBuilt) {
   EXPECT_EQ(json["passed"], false);
   EXPECT_EQ(json["exit_code"], 4);
   EXPECT_THAT(json["error"], testing::HasSubstr("folder.lcm"));
-}
-
-TEST(Results, ReplaceThoseOfAnEarlierRun) {
-  const ScratchFolder folder;
-  const auto loaded = small_world();
-  auto options = quiet_run();
-  options.results = folder.file("results");
-  EXPECT_EQ(experiment::run_world(loaded, options).exit_code, 0);
-  options.launch = true;
-  EXPECT_EQ(experiment::run_world(loaded, options).exit_code, 2);
-  const auto json = nlohmann::json::parse(text_of_file(options.results + "/summary.json"));
-  EXPECT_EQ(json["ended"], "configuration");
-  EXPECT_EQ(json["steps"], 0);
-  for (const char* file : {"metrics.csv", "errors.csv", "tracks.csv", "tracks.png"})
-    EXPECT_FALSE(fs::exists(options.results + "/" + file)) << file;
-}
-
-TEST(Results, AreNeverMixedWithThoseOfAnotherWorld) {
-  const ScratchFolder folder;
-  auto options = quiet_run();
-  options.results = folder.file("results");
-  const auto path = [&](const std::string& file) { return options.results + "/" + file; };
-  experiment::run_world(small_world("processes: [{name: guest, command: [guest]}, {name: guide, command: [guide]}]\n"),
-                        options);
-  fs::create_directory(path("branch0"));
-  fs::create_directory(path("branch1"));
-  for (const char* file : {"guest.log", "guide.log", "report.html", "run.html", "branch0/summary.json",
-                           "branch1/tracks.csv", "branch1/mine.txt", "mine.log", "mine.lcm", "branching.txt"})
-    std::ofstream(path(file)) << "of the earlier run\n";
-  experiment::run_world(small_world(), options);
-  for (const char* file : {"guest.log", "guide.log", "report.html", "run.html", "branch0", "branch1/tracks.csv"})
-    EXPECT_FALSE(fs::exists(path(file))) << file;
-  // What no run writes by itself is kept.
-  for (const char* file : {"branch1/mine.txt", "mine.log", "mine.lcm", "branching.txt"})
-    EXPECT_TRUE(fs::exists(path(file))) << file;
-  EXPECT_TRUE(fs::exists(path("summary.json")));
-  EXPECT_THAT(text_of_file(path("world.yaml")), testing::Not(testing::HasSubstr("guest")));
-}
-
-TEST(Results, OfAnEarlierRunAreGoneWhenARunIsKilled) {
-  const ScratchFolder folder;
-  const auto loaded = small_world();
-  auto options = quiet_run();
-  options.results = folder.file("results");
-  EXPECT_EQ(experiment::run_world(loaded, options).exit_code, 0);
-  sim::InProcessBus bus;
-  sim::World world(loaded.config, bus);
-  experiment::remove_earlier_run(options.results);
-  {
-    const experiment::Results killed(options.results, world);
-  }  // as far as a run comes that is killed in its first step
-  for (const char* file : {"summary.json", "metrics.csv", "errors.csv", "tracks.png"})
-    EXPECT_FALSE(fs::exists(options.results + "/" + file)) << file;
-  EXPECT_TRUE(fs::exists(options.results + "/world.yaml"));
-}
-
-TEST(Results, AFullDiskEndsTheRunAndTheRestIsWritten) {
-  const ScratchFolder folder;
-  auto loaded = small_world();
-  loaded.config.run.duration_s = 20;
-  auto options = quiet_run();
-  options.results = folder.file("results");
-  fs::create_directory(options.results);
-  fs::create_symlink("/dev/full", options.results + "/tracks.csv");
-  const experiment::Summary summary = experiment::run_world(loaded, options);
-  EXPECT_EQ(summary.exit_code, 4);
-  EXPECT_EQ(summary.steps, 1000);  // the first look
-  EXPECT_THAT(summary.error, testing::HasSubstr("tracks.csv': No space left on device"));
-  EXPECT_EQ(text_of_file(options.results + "/summary.json"), summary.to_json());
-  EXPECT_THAT(text_of_file(options.results + "/metrics.csv"), testing::StartsWith("metric,value\n"));
-  EXPECT_TRUE(fs::exists(options.results + "/world.yaml"));
-}
-
-TEST(Results, OneFileThatCannotBeWrittenDoesNotLoseTheOthers) {
-  const ScratchFolder folder;
-  const auto loaded = small_world();
-  auto options = quiet_run();
-  options.results = folder.file("results");
-  fs::create_directories(options.results + "/metrics.csv");
-  const experiment::Summary summary = experiment::run_world(loaded, options);
-  EXPECT_EQ(summary.exit_code, 4);
-  EXPECT_THAT(summary.error, testing::HasSubstr("metrics.csv"));
-  EXPECT_EQ(text_of_file(options.results + "/summary.json"), summary.to_json());
-  EXPECT_TRUE(fs::exists(options.results + "/world.yaml"));
-  EXPECT_TRUE(fs::exists(options.results + "/tracks.png"));
 }
 
 TEST(Results, DoNotChangeTheRun) {

@@ -7,31 +7,13 @@
 
 #include "experiment/score/scoring.hpp"
 #include "tests/devices/world_fixture.hpp"
+#include "tests/experiment/score/support_fixture.hpp"
 
 namespace {
 
-using Eigen::Vector2d;
+using namespace support_fixture;
 
-/// A table of 2 kg on four feet at (+-0.3, +-0.2) m; the mass is `offset_m` ahead of the middle, 0.5 m above ground.
-std::string table_world(double offset_m, const std::string& more = "") {
-  std::string parts;
-  for (const char* place : {"[0.3, 0.2, 0.05]", "[0.3, -0.2, 0.05]", "[-0.3, 0.2, 0.05]", "[-0.3, -0.2, 0.05]"})
-    parts += std::string("            - {shape: sphere, radius_m: 0.05, mass_kg: 1.0e-6, position_m: ") + place + "}\n";
-  return R"(shoal: 1
-physics: {step_s: 0.001}
-objects:
-  - {name: ground, fixed: true, parts: [{shape: plane}]}
-vehicles:
-  - name: t
-    model:
-      shoal: 1
-      vehicle: table
-      bodies:
-        - name: top
-          parts:
-            - {shape: sphere, radius_m: 0.05, mass_kg: 2, position_m: [)" +
-         std::to_string(offset_m) + ", 0, 0.5]}\n" + parts + more;
-}
+using Eigen::Vector2d;
 
 std::optional<experiment::Support> support_of(test::TestWorld& test, double settle_s = 2) {
   test.world.physics().watch_contacts(test.world.find_vehicle("t")->group());
@@ -88,24 +70,6 @@ TEST(Support, TheCapturePointIsAheadByTheSpeed) {
 TEST(Support, InTheAirThereIsNone) {
   test::TestWorld test(table_world(0));
   EXPECT_FALSE(support_of(test, 0));
-}
-
-TEST(StabilityMetric, HasTheMarginsOfATable) {
-  test::TestWorld test(table_world(0.15) + "metrics: [{name: s, type: stability, vehicle: t, from_s: 1}]\n");
-  experiment::Scoring scoring(test.world);
-  for (int i = 0; i < 2000; ++i) {
-    test.world.step();
-    scoring.after_step();
-  }
-  const auto figures = scoring.figures();
-  EXPECT_NEAR(figures.at("s.static_min_m"), 0.15, 1e-4);
-  EXPECT_NEAR(figures.at("s.static_mean_m"), 0.15, 1e-4);
-  EXPECT_NEAR(figures.at("s.zmp_min_m"), 0.15, 1e-3);
-  EXPECT_NEAR(figures.at("s.nesm_min_m"), std::hypot(0.15, 0.5) - 0.5, 1e-4);
-  EXPECT_EQ(figures.at("s.carried_share"), 1);
-  EXPECT_NEAR(figures.at("s.static_m"), 0.15, 1e-4);
-  EXPECT_NEAR(figures.at("s.zmp_m"), 0.15, 1e-3);
-  EXPECT_NEAR(figures.at("s.capture_m"), 0.15, 1e-3);
 }
 
 }  // namespace

@@ -4,66 +4,17 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <fstream>
 
 #include "experiment/campaign/verified_runs.hpp"
 #include "experiment/report/study_report.hpp"
 #include "experiment/study/study_algorithms.hpp"
-#include "tests/devices/world_fixture.hpp"
-#include "tests/project_paths.hpp"
-#include "tests/scratch_folder.hpp"
+#include "tests/experiment/study/algorithm_study.hpp"
 
 namespace {
 
-using test_support::ScratchFolder;
+using namespace algorithm_study;
+
 using testing::HasSubstr;
-
-constexpr const char* bounds = "metrics: [{name: b, type: bound, vehicle: r1, from_s: 5}]\n";
-
-/// A study of a rover with GPS, by two algorithms; `more`: further keys, `metrics` of its world.
-struct AlgorithmStudy {
-  explicit AlgorithmStudy(const std::string& more = "algorithms: [ci, iu]\n", const std::string& metrics = bounds) {
-    write("small.yaml", test::rover_world("        - {name: gps, type: gps, rate_hz: 1}\n", "", "", metrics));
-    write("study.yaml", "shoal: 1\nstudy: tiny\nworlds: [small.yaml]\nlaunch: true\nseeds: 1-5\n" + more);
-  }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder.file(name), std::ios::binary) << text;
-  }
-  experiment::LoadedStudy load(const experiment::StudyChanges& changes = {}) const {
-    return experiment::load_study(folder.file("study.yaml"), changes);
-  }
-  std::string error() const {
-    try {
-      load();
-      return {};
-    } catch (const sim::ConfigError& error) {
-      return error.what();
-    }
-  }
-  ScratchFolder folder;
-};
-
-/// Runs with these rms by algorithm and seed, a bound of 1 m and a NEES by algorithm.
-std::vector<experiment::StudyRun> runs_with(const experiment::LoadedStudy& study,
-                                            const std::map<std::string, std::vector<double>>& rms,
-                                            const std::map<std::string, std::vector<double>>& nees) {
-  std::vector<experiment::StudyRun> runs = experiment::plan_study(study, "out");
-  for (experiment::StudyRun& run : runs) {
-    const auto seed = static_cast<std::size_t>(run.seed - 1);
-    run.record.emplace();
-    run.record->run_hash = "00000000000000a1";
-    for (const auto& [label, values] : rms) {
-      auto& metrics = run.record->metrics;
-      metrics[label + ".rms_m"] = values[seed];
-      metrics[label + ".ratio"] = values[seed];
-      metrics[label + ".nees_mean"] = nees.at(label)[seed];
-      metrics[label + ".inside_95_share"] = 0.9;
-      metrics[label + ".bytes_per_h"] = 1000;
-      metrics[label + ".us_per_event"] = 1 + static_cast<double>(seed);
-    }
-  }
-  return runs;
-}
 
 TEST(AlgorithmTable, HasTheRootMeanSquareTheEfficiencyAndTheNeesOverTheSeeds) {
   const AlgorithmStudy folder;
@@ -145,127 +96,6 @@ TEST(AlgorithmTable, LeavesOutRunsWithoutEstimates) {
   EXPECT_EQ(table.cells()[1].runs, 0u);
   EXPECT_TRUE(std::isnan(table.cells()[1].rms_m));
   EXPECT_TRUE(table.sentences().empty());  // what lacks a run is not ranked
-}
-
-TEST(StudyAlgorithms, ComputeTheFiguresOfTheTeamFromTheFileOfShoalNav) {
-  const AlgorithmStudy folder("algorithms: [ci]\n");
-  const experiment::LoadedStudy study = folder.load();
-  std::vector<experiment::StudyRun> runs = experiment::plan_study(study, folder.folder.file(""));
-  experiment::StudyRun& run = runs[0];
-  run.directory = folder.folder.file("");
-  run.record.emplace();
-  run.record->metrics["b.rms_m"] = 2;
-  const auto scores = [&](const std::string& vehicle) {
-    folder.write("algorithms.json", R"({"algorithms": [{"name": "ci", "us_per_event": 0.5, "vehicles": {"r1": {)" +
-                                        vehicle + R"(}, "other": {}}}]})");
-  };
-  scores(R"("rms_m": 3, "nees_mean": 2.5, "inside_95_share": 0.9, "samples": 10, "bytes_per_h": 70)");
-  experiment::add_algorithm_figures(study, run);
-  EXPECT_DOUBLE_EQ(*run.record->metrics.at("ci.rms_m"), 3);
-  EXPECT_DOUBLE_EQ(*run.record->metrics.at("ci.ratio"), 1.5);
-  EXPECT_DOUBLE_EQ(*run.record->metrics.at("ci.nees_mean"), 2.5);
-  EXPECT_DOUBLE_EQ(*run.record->metrics.at("ci.bytes_per_h"), 70);
-  scores(R"("rms_m": null, "nees_mean": null, "inside_95_share": null, "samples": 0, "bytes_per_h": 70)");
-  experiment::add_algorithm_figures(study, run);
-  EXPECT_FALSE(run.record->metrics.at("ci.rms_m"));
-  scores(R"("rms_m": "3")");
-  EXPECT_THROW(experiment::add_algorithm_figures(study, run), std::runtime_error);
-  folder.write("algorithms.json", R"({"algorithms": []})");
-  EXPECT_THROW(experiment::add_algorithm_figures(study, run), std::runtime_error);
-}
-
-TEST(StudyAlgorithms, NeedWhatIsScored) {
-  const auto error = [](const std::string& more, const std::string& metrics = bounds) {
-    return AlgorithmStudy(more, metrics).error();
-  };
-  EXPECT_EQ(error("algorithms: [ci]\npass: [mean(small.ci.ratio) < 2]\nfigures: [ci.rms_m, b.rms_m]\n"), "");
-  EXPECT_THAT(error("algorithms: [ci]\n", ""),
-              HasSubstr("study.yaml:6:13: 'algorithms' need a metric of type 'bound'"));
-  EXPECT_THAT(error("algorithms: [ci, ci]\n"), HasSubstr("'algorithms' must differ from each other"));
-  EXPECT_THAT(error("algorithms: ['python:a.B']\n"), HasSubstr("an own class in Python is given with --algorithm"));
-  EXPECT_THAT(error("algorithms: [ci]\npairs: iu\n"), HasSubstr("'pairs' must be one of 'algorithms', got 'iu'"));
-  EXPECT_THAT(error("algorithms: [b]\n"), HasSubstr("metric 'b' has the name of an algorithm of the study"));
-  EXPECT_THAT(error("algorithms: [ci]\npass: [mean(small.iu.rms_m) < 2]\n"), HasSubstr("unknown metric 'iu'"));
-  EXPECT_THAT(error("algorithms: [ci]\nworld: small.yaml\n"), HasSubstr("needs either 'world' or 'worlds', not both"));
-  EXPECT_THAT(error("cases: [{name: a}]\n"), HasSubstr("case 'a' needs a 'world', because the study has none"));
-  EXPECT_THAT(error("cases: [{name: small, world: small.yaml}]\n"), HasSubstr("has the name of one of 'worlds'"));
-  EXPECT_EQ(error("cases: [{name: fine, world: small.yaml, set: {physics.step_s: 0.001}}]\n"), "");
-}
-
-TEST(StudyAlgorithms, AreScoredByTheLastBoundOfEachVehicleFromOneTimeOn) {
-  const AlgorithmStudy folder(
-      "algorithms: [ci]\n",
-      "metrics: [{name: b, type: bound, vehicle: r1, from_s: 5}, {name: c, type: bound, vehicle: r1, from_s: 7}]\n");
-  const experiment::LoadedStudy study = folder.load();
-  const auto scoring = experiment::algorithm_scoring(study.worlds[0].config, study.config.algorithms, {});
-  ASSERT_EQ(scoring.vehicles.size(), 1u);
-  EXPECT_EQ(scoring.vehicles[0].bound, "c");
-  EXPECT_EQ(scoring.from_s, 7);
-  folder.write("study.yaml",
-               "shoal: 1\nstudy: own\nlaunch: true\nseeds: [1]\nalgorithms: [ci]\ncases:\n  - {name: a, world: " +
-                   test_support::source_path("worlds/benchmark/13_coop_land.yaml") +
-                   ", set: {metrics.bound_rover1.from_s: 5}}\n");
-  EXPECT_THAT(folder.error(), HasSubstr("must have equal 'from_s' for a study with algorithms, got 30 and 5"));
-}
-
-TEST(StudyAlgorithms, OfTheCommandLineAreAddedByTheNameOfTheirClass) {
-  const AlgorithmStudy folder;
-  experiment::StudyChanges changes;
-  changes.algorithms = {"python:some/where/mine.Mine"};
-  const experiment::LoadedStudy study = folder.load(changes);
-  EXPECT_EQ(study.config.algorithms.size(), 3u);
-  EXPECT_EQ(experiment::algorithm_label(study.config.algorithms[2]), "Mine");
-  changes.algorithms = {"python:mine.ci"};
-  EXPECT_THROW(folder.load(changes), std::invalid_argument);
-  const experiment::StudyRun run = experiment::plan_study(study, "out").front();
-  EXPECT_NE(experiment::inputs_of(study, run), experiment::inputs_of(folder.load(), run));
-}
-
-TEST(VerifiedRuns, AreComparedInAllFiguresButTheCpuTime) {
-  const AlgorithmStudy folder;
-  const experiment::LoadedStudy study = folder.load();
-  auto runs = runs_with(study, {{"ci", {2, 2, 4, 1.0 / 3, 2}}, {"iu", {1, 1, 2, 2, 2}}},
-                        {{"ci", {2, 2, 2, 2, 2}}, {"iu", {2, 2, 2, 2, 2}}});
-  const experiment::StudyResults results(study, runs);
-  const auto rows = experiment::parse_study_rows(results.to_csv(), "study.csv");
-  ASSERT_EQ(rows.size(), 5u);
-  EXPECT_EQ(rows[3].seed, 4);
-  experiment::StudyRun& run = runs[3];
-  run.record->metrics["ci.us_per_event"] = 77;
-  EXPECT_TRUE(experiment::compare_with_row(run, rows[3]).differences.empty());
-  EXPECT_EQ(experiment::compare_with_row(run, rows[3]).figures, 10u);  // five of each algorithm
-  run.record->metrics["ci.rms_m"] = std::nextafter(1.0 / 3, 1);
-  EXPECT_EQ(experiment::compare_with_row(run, rows[3]).differences.size(), 1u);
-  run.record->run_hash = "00000000000000a2";
-  run.record->metrics.erase("iu.rms_m");
-  EXPECT_EQ(experiment::compare_with_row(run, rows[3]).differences.size(), 3u);
-}
-
-TEST(VerifiedRuns, ATableThatIsWrongIsRefusedWithItsLine) {
-  const std::string head =
-      "case,seed,exit_code,passed,ended,sim_time_s,wall_s,run_hash,ci.rms_m,run,point,shoal,processor,c_library\n";
-  const auto error = [](const std::string& text) -> std::string {
-    try {
-      experiment::parse_study_rows(text, "study.csv");
-      return {};
-    } catch (const std::runtime_error& wrong) {
-      return wrong.what();
-    }
-  };
-  EXPECT_EQ(error(head), "");
-  EXPECT_EQ(error(""), "study.csv: is empty");
-  EXPECT_EQ(error("a,b\n"), "study.csv:1: column 1 must be 'case': this is not a study.csv of shoal");
-  EXPECT_EQ(error(head + "w,1\n"), "study.csv:2: must have 14 fields, got 2");
-  EXPECT_EQ(error(head + "w,x,0,1,duration,1,1,a1,1,1,0,0,0,0\n"),
-            "study.csv:2: 'seed' must be a whole number from 0 on, got 'x'");
-  EXPECT_EQ(error(head + "w,1,0,1,duration,1,1,a1,1.5m,1,0,0,0,0\n"),
-            "study.csv:2: 'ci.rms_m' must be a number, got '1.5m'");
-  EXPECT_EQ(error(head + "w,1,\"0\n"), "study.csv:2: a quote is not closed");
-  const std::string row = "w,1,0,1,duration,1,1,a1,1,1,0,0,0,0\n";
-  EXPECT_EQ(error(head + row + row), "study.csv:3: a second row of case 'w', seed 1");
-  std::string twice = head;
-  twice.replace(twice.find(",run,"), 5, ",ci.rms_m,run,");
-  EXPECT_EQ(error(twice), "study.csv:1: each column must be named once");
 }
 
 }  // namespace

@@ -4,22 +4,14 @@
 #include <gmock/gmock.h>
 
 #include <string>
-#include <vector>
+
+#include "tests/experiment/terminal/key_events_fixture.hpp"
 
 namespace {
 
-using experiment::KeyEvent;
-using testing::ElementsAre;
+using namespace key_events_fixture;
 
-/// Events of bytes: names, with `^` before those with Ctrl and `-` after a release.
-std::vector<std::string> events_of(const std::string& bytes) {
-  experiment::KeyEvents keys;
-  std::vector<std::string> events;
-  for (const char byte : bytes)
-    if (const auto event = keys.next(byte))
-      events.push_back((event->ctrl ? "^" : "") + event->key + (event->action == KeyEvent::Action::release ? "-" : ""));
-  return events;
-}
+using testing::ElementsAre;
 
 TEST(KeyEvents, NamesArrowsOfBothModesOfATerminal) {
   EXPECT_THAT(events_of("\x1b[A\x1bOD w\x1b[5~\x1b[1;5Cq\t\r\x7f\x04"),
@@ -28,15 +20,6 @@ TEST(KeyEvents, NamesArrowsOfBothModesOfATerminal) {
 
 TEST(KeyEvents, KeysOfTheLinuxConsoleDoNotBecomeLetters) {
   EXPECT_THAT(events_of("a\x1b[[Ab"), ElementsAre("a", "b"));  // F1
-}
-
-TEST(KeyEvents, ALongSequenceIsDiscardedWhole) {
-  EXPECT_THAT(events_of("\x1b[" + std::string(200, '1') + "Zx"), ElementsAre("x"));
-}
-
-TEST(KeyEvents, ASequenceThatIsBrokenOffDoesNotHideWhatFollows) {
-  EXPECT_THAT(events_of("\x1b[1\x1b[Ar"), ElementsAre("up", "r"));
-  EXPECT_THAT(events_of("\x1b\x1b[Br"), ElementsAre("down", "r"));
 }
 
 TEST(KeyEvents, AReportOfTheKittyProtocolHasTheReleaseOfAKey) {

@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 
 #include <map>
-#include <numbers>
 #include <stdexcept>
 
 #include "tests/motion/formats/format_fixture.hpp"
@@ -28,19 +27,6 @@ TEST(MotFormat, StartsWithTheApproachBecauseKeysAtZeroAreReplaced) {
   EXPECT_DOUBLE_EQ(again.motion.end_s(), 1);
   EXPECT_DOUBLE_EQ(test::value(again.motion, "lf_swing", 0), 0.25);
   EXPECT_DOUBLE_EQ(test::value(again.motion, "lf_knee", 0.5), 1);
-}
-
-TEST(MotFormat, FindsOutputsAsTekkotsu) {
-  const test::Read file = test::read("mot",
-                                     "#MSq\n# remark\nadvanceTime 99\nLFr:knee~~~ 1\nFr:rotor 0.5\nNECK:roll "
-                                     "0\nLED:face 1\ndegrees\nDELAY 100\nLFr:kn 90\n#END\nrubbish",
-                                     test::leg_names());
-  EXPECT_DOUBLE_EQ(test::value(file.motion, "lf_swing", 0), 0.5) << "a name without L or R sets both sides";
-  EXPECT_DOUBLE_EQ(test::value(file.motion, "rf_swing", 0), 0.5);
-  EXPECT_DOUBLE_EQ(test::value(file.motion, "lf_knee", 0), 1);
-  EXPECT_DOUBLE_EQ(test::value(file.motion, "lf_knee", 0.1), std::numbers::pi / 2);
-  EXPECT_DOUBLE_EQ(file.motion.start.min_s, 0.1) << "the playhead starts at 1 ms";
-  EXPECT_THAT(file.losses, ElementsAre("outputs that vehicle 'leg' does not have are left out: NECK:roll, LED:face"));
 }
 
 TEST(MotFormat, KeepsTheLightsOfTheVehicle) {
@@ -126,12 +112,6 @@ TEST(MotFormat, SaysWhereAndWhatIsWrong) {
   EXPECT_EQ(error("LED:face 1\n#END\n"), "file: needs the value of an output of the vehicle after time 0");
 }
 
-TEST(MotFormat, HasAtMost200Outputs) {
-  std::string text = "#MSq\n";
-  for (int i = 0; i < 201; ++i) text += "joint" + std::to_string(i) + " 1\n";
-  EXPECT_EQ(test::read_error("mot", text + "#END\n"), "file:202:1: must have at most 200 outputs");
-}
-
 TEST(PosFormat, HoldsOneInstant) {
   const sim::JointMotion motion = test::motion({{0, {{"lf_swing", 0}}}, {1, {{"lf_swing", 1}}}});
   EXPECT_EQ(test::error_of([&] { test::written("pos", motion, test::leg_names()); }),
@@ -141,18 +121,6 @@ TEST(PosFormat, HoldsOneInstant) {
   const test::Written file = test::written("pos", motion, test::leg_names(), options);
   EXPECT_EQ(file.bytes, "#POS\nLFr:rotor\t0.250000\t1\n#END\n");
   EXPECT_THAT(file.losses, ElementsAre("only the pose at 0.25 s is kept"));
-}
-
-TEST(PosFormat, ReadsThePartsThatAreOutputs) {
-  const test::Read file = test::read("pos",
-                                     "#POS\n<meta-info>\n timestamp 12\n</meta-info>\nLFr:rotor = -0.79 1.00 # "
-                                     "remark\n<sensors>\nIR 5\n</sensors>\n#END\n",
-                                     test::leg_names());
-  EXPECT_DOUBLE_EQ(test::value(file.motion, "lf_swing", 0), -0.79);
-  EXPECT_THAT(file.losses, IsEmpty());
-  EXPECT_EQ(
-      test::read_error("pos", "#POS\ncondensed ERS-7\n#END\n", test::leg_names()),
-      "file:2:1: postures for one model of robot are not supported: must be a name of an output, got 'condensed'");
 }
 
 }  // namespace

@@ -4,31 +4,13 @@
 #include <gmock/gmock.h>
 
 #include "motion/record/record_input.hpp"
+#include "tests/motion/record/joint_commands_fixture.hpp"
 
 namespace {
 
-using experiment::InputEvent;
+using namespace joint_commands_fixture;
+
 using testing::ElementsAre;
-
-const std::vector<std::string> names{"hip", "knee", "foot"};
-
-std::optional<std::size_t> number_of(const std::string& name) {
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (names[i] == name) return i;
-  return std::nullopt;
-}
-
-devices::JointControls controls() {
-  devices::JointControls controls;
-  controls.velocity = 2;
-  controls.keys = {{"hip", "1", "q", {}}, {"knee", "2", "w", 0.5}, {"foot", "3", "e", {}}};
-  controls.sticks = {{"leg", "hip", 0, 1.0}, {"leg", "knee", 1, -1.0}, {"toes", "foot", 0, 4.0}};
-  return controls;
-}
-
-motion::JointCommands commands(std::vector<std::string> actions = {}) {
-  return {controls(), names, number_of, std::move(actions)};
-}
 
 TEST(JointCommands, AllKeysOfAFrameMoveTheirJointsInThisFrame) {
   motion::JointCommands held = commands();
@@ -110,25 +92,6 @@ TEST(JointCommands, WithoutControlsThePairsOfTheKeyboardFollowTheServos) {
   held.key("e", true);
   EXPECT_THAT(held.velocities(), ElementsAre(0, 1, -1));
   EXPECT_EQ(held.set(), "1");
-}
-
-TEST(RecordInput, TakesEventsOfAFileUpToATime) {
-  motion::JointCommands held = commands();
-  // Codes of the keys 1, w and 3; times far from 0, as the kernel stamps them.
-  motion::EventFileInput file({{5'000'000, InputEvent::button, 2, 1},
-                               {5'008'000, InputEvent::button, 17, 1},
-                               {5'008'000, InputEvent::button, 4, 1},
-                               {5'008'001, InputEvent::button, 2, 0},
-                               {5'020'000, InputEvent::report, InputEvent::report_dropped, 0}});
-  EXPECT_TRUE(file.read(0, held));
-  EXPECT_THAT(held.velocities(), ElementsAre(2, 0, 0));
-  EXPECT_TRUE(file.read(8000, held));
-  EXPECT_THAT(held.velocities(), ElementsAre(2, -0.5, 2));
-  EXPECT_TRUE(file.read(16000, held));
-  EXPECT_THAT(held.velocities(), ElementsAre(0, -0.5, 2));
-  // The kernel has dropped events: what is held is unknown.
-  EXPECT_FALSE(file.read(24000, held));
-  EXPECT_THAT(held.velocities(), ElementsAre(0, 0, 0));
 }
 
 TEST(JointCommands, KeysOfActionsAreCharactersAndWords) {

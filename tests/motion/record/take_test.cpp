@@ -3,11 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include <filesystem>
-#include <fstream>
-
 #include "motion/record/take_journal.hpp"
-#include "tests/scratch_folder.hpp"
 
 namespace {
 
@@ -98,35 +94,6 @@ TEST(Take, HasNoMoreValuesThanCanBeWritten) {
   EXPECT_EQ(motion::max_take_frames(200), 100'000u);
   EXPECT_EQ(motion::max_take_frames(1), 1'000'000u);
   EXPECT_THAT(error_of(text), HasSubstr(":100003: must have at most 100000 frames"));
-}
-
-TEST(TakeJournal, HoldsEachFrameAtOnceAndExactly) {
-  const test_support::ScratchFolder folder;
-  const std::string path = folder.file("wave.yaml.journal");
-  motion::TakeSettings settings;
-  settings.joints = {"hip", "knee"};
-  settings.world = "it's \"x\"";
-  settings.set = {"run.seed=2"};
-  settings.from_s = 0.1;
-  {
-    motion::TakeJournal journal(path, settings);
-    const double exact = 1.0 / 3;
-    journal.frame(std::vector<double>{exact, 0});
-    // Another reader sees it before the journal is closed.
-    motion::Take take = motion::read_take(path);
-    EXPECT_EQ(take.frames[0][0], exact);
-    EXPECT_EQ(take.settings.world, settings.world);
-    EXPECT_EQ(take.settings.set, settings.set);
-    EXPECT_EQ(take.settings.from_s, 0.1);
-    EXPECT_TRUE(motion::is_recording(path));
-    journal.frame(std::vector<double>{exact, 1e-300});
-    journal.back(0);
-    journal.frame(std::vector<double>{exact, 0});
-    take = motion::read_take(path);
-    EXPECT_THAT(take.frames[1], ElementsAre(0, 0));
-    EXPECT_THROW(motion::TakeJournal(path, settings), std::runtime_error);
-  }
-  EXPECT_FALSE(motion::is_recording(path));
 }
 
 }  // namespace

@@ -3,90 +3,23 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "sim/config/config_node.hpp"
+#include "tests/sim/config/include_fixture.hpp"
 
 namespace {
 
+using namespace include_fixture;
+
 namespace fs = std::filesystem;
+
 using sim::ConfigNode;
 using sim::Diagnostics;
-using Kind = ConfigNode::Kind;
-using Lines = std::vector<std::string>;
-
-class IncludeTest : public testing::Test {
- protected:
-  IncludeTest()
-      : home_(fs::current_path()),
-        directory_(fs::temp_directory_path() / ("shoal_include_" + std::to_string(getpid()))) {
-    fs::create_directories(directory_);
-    fs::current_path(directory_);  // so that messages hold short names
-  }
-  ~IncludeTest() override {
-    fs::current_path(home_);
-    fs::remove_all(directory_);
-  }
-
-  void write(const std::string& name, const std::string& text) {
-    if (const fs::path folder = fs::path(name).parent_path(); !folder.empty()) fs::create_directories(folder);
-    std::ofstream(name, std::ios::binary) << text;
-  }
-
-  ConfigNode load(const std::string& name) {
-    Diagnostics diagnostics;
-    ConfigNode node = sim::load_config_file(name, diagnostics);
-    EXPECT_EQ(diagnostics.lines(), Lines{});
-    return node;
-  }
-
-  Lines errors_of(const std::string& name) {
-    Diagnostics diagnostics;
-    EXPECT_EQ(sim::load_config_file(name, diagnostics).kind, Kind::null);
-    return diagnostics.lines();
-  }
-
- private:
-  fs::path home_;
-  fs::path directory_;
-};
 
 TEST_F(IncludeTest, AFileWithoutIncludeIsItself) {
   write("w.yaml", "a: 1\n");
   EXPECT_EQ(sim::to_yaml(load("w.yaml")), "a: 1\n");
-}
-
-TEST_F(IncludeTest, TheIncludingFileLiesOverTheBase) {
-  write("base.yaml", "a: 1\nm: {x: 1, y: [1, 2]}\n");
-  write("w.yaml", "m: {y: [3], z: 4}\ninclude: base.yaml\nb: 2\n");
-  EXPECT_EQ(sim::to_yaml(load("w.yaml")), "a: 1\nm:\n  x: 1\n  y: [3]\n  z: 4\nb: 2\n");
-}
-
-TEST_F(IncludeTest, NamedItemsMergeByName) {
-  write("base.yaml", "v:\n  - {name: a, x: 1, y: 1}\n  - {name: b, x: 2}\n");
-  write("w.yaml", "include: base.yaml\nv:\n  - {name: c, x: 3}\n  - {name: a, x: 9}\n");
-  EXPECT_EQ(sim::to_yaml(load("w.yaml")),
-            "v:\n  - name: a\n    x: 9\n    y: 1\n  - name: b\n    x: 2\n  - name: c\n    x: 3\n");
-}
-
-TEST_F(IncludeTest, ANameWrittenTwiceStaysADuplicate) {
-  write("base.yaml", "v:\n  - {name: a, x: 1}\n");
-  write("w.yaml", "include: base.yaml\nv:\n  - {name: a, x: 2}\n  - {name: a, x: 3}\n");
-  EXPECT_EQ(load("w.yaml").find("v")->items.size(), 2u);
-}
-
-TEST_F(IncludeTest, ListsWithoutNamesAreReplaced) {
-  write("base.yaml", "p: [{x: 1}, {x: 2}]\nv: [{name: a}]\n");
-  write("w.yaml", "include: base.yaml\np: [{x: 3}]\nv: []\n");
-  EXPECT_EQ(sim::to_yaml(load("w.yaml")), "p:\n  - x: 3\nv: []\n");
-}
-
-TEST_F(IncludeTest, LaterFilesOfAListLieOverEarlierOnes) {
-  write("one.yaml", "a: 1\nb: 1\nc: 1\n");
-  write("two.yaml", "b: 2\nc: 2\n");
-  write("w.yaml", "include: [one.yaml, two.yaml]\nc: 3\n");
-  EXPECT_EQ(sim::to_yaml(load("w.yaml")), "a: 1\nb: 2\nc: 3\n");
 }
 
 TEST_F(IncludeTest, NamesAreRelativeToTheFileThatHoldsThem) {

@@ -1,31 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <cmath>
 #include <string>
-#include <vector>
 
 #include "tests/sim/hydrodynamics/floating_worlds.hpp"
-
-// Light bodies let go under water: they come up to their terminal speed and leap as high as that takes them.
+#include "tests/sim/hydrodynamics/release_fixture.hpp"
 
 namespace {
 
+using namespace release_fixture;
+
+// Light bodies let go under water: they come up to their terminal speed and leap as high as that takes them.
+
 using test::body_of;
-using test::floating_world;
 using test::TestWorld;
 
-const char* sphere_02 = "shape: sphere, radius_m: 0.2, mass_kg: 0.1";
 const char* sphere_03 = "shape: sphere, radius_m: 0.3, mass_kg: 5";
+
 const char* raft = "shape: box, size_m: [1, 1, 0.2], density_kgpm3: 10";
+
 const char* capsule = "shape: capsule, radius_m: 0.15, length_m: 0.6, density_kgpm3: 30";
-const char* bubble = "shape: sphere, radius_m: 0.3, mass_kg: 0.01";
-const char* no_added_mass = ", added_mass_coefficient: 0";
-
-const std::vector<double> steps_s{0.001, 0.005, 0.01, 0.02, 0.05};
-
-std::string released(const std::string& part, double step_s, const std::string& more = "") {
-  return floating_world("[{" + part + "}]", "[0, 0, -2]", step_s, more);
-}
 
 double highest_within(TestWorld& test, double time_s) {
   double highest = -1e9;
@@ -61,20 +54,6 @@ TEST(Release, WithoutAddedMassItLeapsNoHigherInLongSteps) {
   }
 }
 
-TEST(Release, ABallRisesNoFasterThanItsTerminalSpeed) {
-  // Drag 1/2 rho C_d pi r^2 v^2 balances rho V g: v^2 = 8 g r / (3 C_d).
-  const double terminal = std::sqrt(8 * 9.80665 * 0.3 / (3 * 0.47));
-  for (const std::string more : {"", no_added_mass})
-    for (const double step_s : steps_s) {
-      TestWorld test(floating_world("[{" + std::string(bubble) + more + "}]", "[0, 0, -20]", step_s));
-      for (int i = 0; i < 4 / step_s; ++i) {
-        test.world.step();
-        ASSERT_LT(body_of(test).v_WB_W().z(), terminal * 1.001) << "step " << step_s;
-      }
-      EXPECT_NEAR(body_of(test).v_WB_W().z(), terminal, 0.01 * terminal) << "step " << step_s;
-    }
-}
-
 TEST(Release, NoEnergyComesOutOfNothing) {
   // Let go askew.  With added mass C of what it displaces a body gets at most g / C of acceleration, so that the first
   // leap is at most 1 / C = 2 times the way up; what it does later is lower and lower.
@@ -102,19 +81,6 @@ TEST(Release, ARunNeverEndsBecauseOfALightBody) {
               released(shape + ", mass_kg: " + sim::number_text(mass_kg) + more, step_s, ", rpy_deg: [30, 60, 0]"));
           EXPECT_LT(highest_within(test, 10), 6) << shape << more << ", " << mass_kg << " kg, step " << step_s;
         }
-}
-
-TEST(Release, ADragCoefficientIsANumberOrAList) {
-  const auto depth_after = [](const std::string& drag) {
-    TestWorld test(released("shape: sphere, radius_m: 0.2, density_kgpm3: 2000, drag_coefficient: " + drag, 0.01));
-    test.run_for(2);
-    return body_of(test).X_WB().translation().z();
-  };
-  EXPECT_EQ(depth_after("1.2"), depth_after("[1.2]"));
-  EXPECT_EQ(depth_after("1.2"), depth_after("[1.2, 1.2, 1.2]"));
-  EXPECT_LT(depth_after("0.6"), depth_after("1.2") - 0.1);
-  EXPECT_NE(test::error_of_world(released(std::string(sphere_02) + ", drag_coefficient: -1", 0.01)), "");
-  EXPECT_NE(test::error_of_world(released(std::string(sphere_02) + ", drag_coefficient: much", 0.01)), "");
 }
 
 }  // namespace

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "sim/medium/waves.hpp"
+
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "tests/fidelity/closed_forms.hpp"
 #include "tests/sim/medium/medium_worlds.hpp"
+#include "tests/sim/medium/wave_records.hpp"
 
 namespace {
+
+using namespace wave_records;
 
 using sim::Time;
 using sim::Vector3d;
@@ -17,11 +21,8 @@ using test::closed_form;
 using test::closed_forms_of;
 using test::ClosedForm;
 using test::expect_closed_form;
-using test_support::error_of;
 using test_support::make_medium;
-using testing::HasSubstr;
 
-constexpr double g = 9.80665, pi = std::numbers::pi;
 constexpr double deep = std::numeric_limits<double>::infinity();
 
 TEST(WaveNumber, IsThatOfDeepAndOfFiniteWater) {
@@ -36,16 +37,6 @@ TEST(WaveNumber, IsThatOfDeepAndOfFiniteWater) {
       const double k = sim::wave_number(omega, g, depth_m);
       EXPECT_NEAR(g * k * std::tanh(k * depth_m) / (omega * omega), 1, 1e-13) << depth_m << " " << omega;
     }
-}
-
-TEST(Spectrum, HasThePeakOfItsFormula) {
-  for (const auto& form : closed_forms_of("pierson_moskowitz", "peak_spectral_density"))
-    EXPECT_NEAR(sim::pierson_moskowitz_m2s(2 * pi / form.at("Tp"), form.at("Hs"), form.at("Tp")), form.expected, 1e-9);
-  for (const auto& form : closed_forms_of("jonswap", "peak_spectral_density"))
-    EXPECT_NEAR(sim::jonswap_m2s(2 * pi / form.at("Tp"), form.at("Hs"), form.at("Tp"), form.at("gamma")), form.expected,
-                1e-9);
-  EXPECT_DOUBLE_EQ(sim::jonswap_m2s(1.7, 1, 5, 1), sim::pierson_moskowitz_m2s(1.7, 1, 5));
-  EXPECT_EQ(sim::jonswap_m2s(0, 1, 5, 3.3), 0);
 }
 
 TEST(RegularWave, RunsWithItsPhaseSpeed) {
@@ -157,19 +148,6 @@ Record record_of(const std::string& waves, double tp_s, int places) {
   return {sum / count, squares / count, sim::to_seconds(step) * count / rises};
 }
 
-std::vector<ClosedForm> rows_of_spectra() {
-  std::vector<ClosedForm> rows = closed_forms_of("pierson_moskowitz");
-  for (const ClosedForm& row : closed_forms_of("jonswap")) rows.push_back(row);
-  return rows;
-}
-
-/// The `waves:` of a row.
-std::string spectrum_of(const ClosedForm& form) {
-  return "type: " + form.name + ", hs_m: " + std::to_string(form.at("Hs")) +
-         ", tp_s: " + std::to_string(form.at("Tp")) +
-         (form.name == "jonswap" ? ", gamma: " + std::to_string(form.at("gamma")) : "");
-}
-
 TEST(IrregularWaves, HaveTheirHeightAndPeriod) {
   // A record of 200 Tp at one place knows the variance of a Gaussian sea to 7 % (sqrt(pi int S^2 / (m0^2 T))); 40
   // places make that 1.1 %.  The rows: variance 5 %, Tz 5 %; asked for here: Hs 3 %.
@@ -183,42 +161,6 @@ TEST(IrregularWaves, HaveTheirHeightAndPeriod) {
     expect_closed_form(record.tz_s, variance.name, variance.parameters, "Tz");
     EXPECT_NEAR(record.mean_m, 0, 0.02 * hs_m) << waves;
   }
-}
-
-struct Moments {
-  double m0 = 0, m1 = 0, m2 = 0;
-};
-
-Moments moments_of(const std::string& waves, std::uint64_t seed) {
-  sim::Random random(seed, "test");
-  random.begin_step(0);
-  Moments sums;
-  for (const auto& wave :
-       sim::make_waves(*test_support::read_medium("{water: {}, waves: {" + waves + "}}").waves, g, random)) {
-    const double variance = wave.amplitude_m * wave.amplitude_m / 2;
-    sums.m0 += variance;
-    sums.m1 += variance * wave.omega_radps;
-    sums.m2 += variance * wave.omega_radps * wave.omega_radps;
-  }
-  return sums;
-}
-
-TEST(IrregularWaves, HaveTheMomentsOfTheirSpectrum) {
-  // Tz and T1 of the rows with their cut-off at 40 wp: 5 % there, 1 % here, as bins are narrow; m0 is exact.
-  for (const ClosedForm& row : rows_of_spectra())
-    for (std::uint64_t seed = 1; seed < 6; ++seed) {
-      const Moments sums = moments_of(spectrum_of(row) + ", cutoff: 40", seed);
-      const auto expect = [&](double value, double tolerance) {
-        EXPECT_NEAR(value, row.expected, tolerance) << row.quantity << " of " << spectrum_of(row);
-      };
-      if (row.quantity == "variance") expect(sums.m0, 1e-12);
-      if (row.quantity == "Tz") expect(2 * pi * std::sqrt(sums.m0 / sums.m2), 0.01 * row.expected);
-      if (row.quantity == "T1") expect(2 * pi * sums.m0 / sums.m1, 0.01 * row.expected);
-    }
-  // What the default cut-off at 10 wp leaves out: (5/32) Hs^2 wp^2 / 100 of m2, 0.6 % of Tz.
-  const ClosedForm tz = closed_form("jonswap", "Hs=2", "Tz");
-  const Moments cut = moments_of(spectrum_of(tz), 1);
-  EXPECT_NEAR(2 * pi * std::sqrt(cut.m0 / cut.m2), tz.expected, 0.016 * tz.expected);
 }
 
 TEST(IrregularWaves, SpreadAboutTheirDirection) {
@@ -295,33 +237,6 @@ TEST(IrregularWaves, SeedChoosesTheSea) {
   EXPECT_EQ(test_support::read_medium(yaml).waves->hs_m, 0.88);
   EXPECT_EQ(test_support::read_medium(yaml).waves->tp_s, 7.5);
   EXPECT_EQ(make_medium("{water: {surface_m: 2}, waves: {sea_state: 0}}").surface_m(1, 2), 2);
-}
-
-TEST(Waves, ThatWouldBreakAreRefused) {
-  // 0.142 of 39.02 m; g 4^2 / (2 pi 15); 0.6 of 2 m.
-  EXPECT_THAT(error_of("{water: {}, waves: {type: regular, height_m: 6, period_s: 5}}"),
-              HasSubstr("'height_m' 6 is above the breaking limit of a wave of 5 s, 5.54 m"));
-  EXPECT_THAT(error_of("{water: {}, waves: {hs_m: 2, tp_s: 4}}"),
-              HasSubstr("is above the breaking limit of a sea with 'tp_s' 4, 1.664 m"));
-  EXPECT_THAT(error_of("{water: {}, waves: {hs_m: 2, tp_s: 8, water_depth_m: 2}}"), HasSubstr("0.6 of the depth"));
-  EXPECT_THAT(error_of("{water: {}, waves: {tp_s: 0}}"), HasSubstr("'tp_s' must be >= 0.2"));
-  EXPECT_THAT(error_of("{water: {}, waves: {type: regular, hs_m: 1}}"),
-              HasSubstr("'hs_m' does not apply to type regular"));
-  EXPECT_THAT(error_of("{water: {}, waves: {sea_state: 3, hs_m: 1}}"), HasSubstr("leave out 'hs_m' and 'tp_s'"));
-}
-
-TEST(Waves, NeedGravityAndSayWhatItIs) {
-  const auto error = [](double gravity_mps2) -> std::string {
-    try {
-      const sim::Medium medium(test_support::read_medium("{water: {}, waves: {}}"), gravity_mps2, 1);
-    } catch (const sim::ConfigError& bad) {
-      return bad.what();
-    }
-    return "";
-  };
-  EXPECT_THAT(error(-9.81), testing::HasSubstr("medium: waves: waves need 'gravity_mps2' above 0, got -9.81"));
-  EXPECT_THAT(error(0), testing::HasSubstr("above 0, got 0"));
-  EXPECT_EQ(error(9.81), "");
 }
 
 }  // namespace

@@ -17,16 +17,8 @@ using testing::HasSubstr;
 std::string error_of(const std::string& more, const std::string& step_s = "0.001") {
   return test::error_of_world(test::marine_world("{frame: frd, mass_kg: 10" + more + "}", "{water: {}}", "", step_s));
 }
+
 const std::string inertia = ", inertia_kgm2: [1, 1, 1]";
-
-TEST(HydrodynamicsChecks, AnInertiaIsSymmetricAlsoWithoutCoefficients) {
-  EXPECT_THAT(error_of(", model: none, inertia_kgm2: [1, 0.5, 0, 0, 1, 0, 0, 0, 1]"),
-              HasSubstr("'inertia_kgm2' must be symmetric"));
-}
-
-TEST(HydrodynamicsChecks, GoodCoefficientsPass) {
-  EXPECT_EQ(error_of(inertia + ", added_mass: [1, 10, 10, 0.1, 1, 1], linear_damping: [1, 2, 3, 1, 1, 1]"), "");
-}
 
 TEST(HydrodynamicsChecks, NegativeAddedMassIsADerivative) {
   EXPECT_THAT(error_of(inertia + ", added_mass: [-0.93, 35.5, 35.5, 0, 0, 0]"),
@@ -95,27 +87,6 @@ TEST(HydrodynamicsChecks, DampingBrakes) {
   EXPECT_THAT(error_of(inertia + ", derivatives: {N_r: 1.62}"), HasSubstr("'N_r' must be <= 0"));
 }
 
-TEST(HydrodynamicsChecks, MatricesHaveTheirShape) {
-  EXPECT_THAT(error_of(inertia + ", added_mass: [1, 2, 3]"),
-              HasSubstr("'added_mass' must have 6 numbers (the diagonal) or 36 (row by row), got 3"));
-  EXPECT_THAT(
-      error_of(inertia + ", added_mass: [1, 1, 1, 0, 0, 0], added_mass_of_spheroid: {half_length_m: 1, radius_m: 0.1}"),
-      HasSubstr("only one of 'added_mass' and 'added_mass_of_spheroid'"));
-  EXPECT_THAT(error_of(inertia + ", added_mass_of_spheroid: {half_length_m: 0.1, radius_m: 1}"),
-              HasSubstr("'radius_m' must be <= 'half_length_m' 0.1, got 1"));
-}
-
-TEST(HydrodynamicsChecks, AStepTooLongForStiffForcesIsRefused) {
-  // 100 N s/m on 10 kg: it needs a step below 2 * 10 / 1000 s.
-  EXPECT_THAT(error_of(inertia + ", linear_damping: [1000, 0, 0, 0, 0, 0]", "0.05"),
-              HasSubstr("the forces of linear damping are too stiff for 'step_s' 0.05: they need a step below 0.02 s"));
-  EXPECT_EQ(error_of(inertia + ", linear_damping: [1000, 0, 0, 0, 0, 0]", "0.01"), "");
-  // Roll at sqrt(1e5 / 10) = 100 rad/s.
-  EXPECT_THAT(error_of(", inertia_kgm2: [10, 1000, 1000], waterline: {heave_Npm: 1, roll_Nmprad: 1e5, pitch_Nmprad: 1}",
-                       "0.05"),
-              HasSubstr("the restoring forces are too stiff for 'step_s' 0.05: they need a step below 0.02 s"));
-}
-
 TEST(HydrodynamicsChecks, AHullThatTurnsOverIsDoubted) {
   const std::string rest = ", mass_kg: 10, inertia_kgm2: [1, 1, 1], center_of_mass_m: [0, 0, 0.02]}";
   EXPECT_THAT(sim::doubts_about(test::config_of("{frame: frd" + rest)), testing::IsEmpty());
@@ -137,11 +108,6 @@ TEST(HydrodynamicsChecks, AnInertiaFarBelowThatOfASphereIsDoubted) {
   EXPECT_THAT(doubts("[15.3, 15.3, 15.3]"),
               testing::ElementsAre("the mean of its moments of inertia is 15.3 kg m^2, less than a tenth of that of a "
                                    "sphere of its mass and volume, 153.934"));
-}
-
-TEST(HydrodynamicsChecks, BuoyancyIsGivenInOneWay) {
-  EXPECT_THAT(error_of(inertia + ", buoyancy_N: 100, volume_m3: 0.01", "0.01"),
-              HasSubstr("needs either 'buoyancy_N' or 'volume_m3', not both"));
 }
 
 TEST(HydrodynamicsChecks, TheRateOfDragGrowsWithTheSpeed) {

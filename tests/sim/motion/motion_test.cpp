@@ -6,42 +6,15 @@
 #include <fstream>
 #include <numbers>
 
-#include "tests/scratch_folder.hpp"
+#include "tests/sim/motion/motion_fixture.hpp"
 
 namespace {
 
+using namespace motion_fixture;
+
 using testing::HasSubstr;
+
 constexpr double deg = std::numbers::pi / 180;
-
-const char* const wave = R"(shoal: 1
-motion: wave
-vehicle: ers7
-ease: cosine
-poses:
-  - {name: stand, joints: {lf_knee: 30, rf_knee: 30, "PRM:/r2/c1-Joint2:21": -5}}
-keys:
-  - {at_s: 0, pose: stand}
-  - {at_s: 0.5, joints: {lf_knee: 80}, ease: linear, note: up}
-  - {at_s: 1, pose: stand, joints: {rf_knee: 40}}
-)";
-
-struct MotionFile {
-  test_support::ScratchFolder folder;
-  std::string path = folder.file("a.motion.yaml");
-
-  explicit MotionFile(const std::string& text) { std::ofstream(path) << text; }
-  sim::JointMotion load() const { return sim::load_motion(path); }
-  std::string error() const {
-    try {
-      load();
-      return {};
-    } catch (const sim::ConfigError& error) {
-      std::string text = error.what();
-      for (std::size_t at; (at = text.find(path)) != std::string::npos;) text.replace(at, path.size(), "FILE");
-      return text;
-    }
-  }
-};
 
 TEST(JointMotion, ItsKeysSetAPoseAndSingleJoints) {
   const sim::JointMotion motion = MotionFile(wave).load();
@@ -96,18 +69,6 @@ TEST(JointMotion, SaysWhatIsWrongWithASound) {
   EXPECT_THAT(error("{at_s: 0}"), HasSubstr("FILE:4:10: sound 1: missing key 'sound'"));
   EXPECT_THAT(error("{at_s: -1, sound: bark}"), HasSubstr("'at_s' must be >= 0"));
   EXPECT_THAT(error("{at_s: 0, sound: bark, volume: 2}"), HasSubstr("'volume' must be >= 1e-06 and <= 1, got 2"));
-}
-
-TEST(JointMotion, ItsTextReadsToTheSameMotion) {
-  const sim::JointMotion motion = MotionFile(wave).load();
-  const std::string text = sim::motion_text(motion);
-  const sim::JointMotion again = MotionFile(text).load();
-  EXPECT_EQ(sim::motion_text(again), text);
-  const auto tracks = motion.tracks(), others = again.tracks();
-  for (std::size_t i = 0; i < tracks.size(); ++i)
-    for (std::size_t k = 0; k < tracks[i].keys.size(); ++k)
-      EXPECT_EQ(tracks[i].keys[k].value, others[i].keys[k].value) << tracks[i].joint << " " << k;
-  EXPECT_EQ(again.keys[1].note, "up");
 }
 
 TEST(JointMotion, ReadsItsFramesFromACsvFileBesideItAndKeysReplaceThem) {

@@ -4,15 +4,22 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tools/command_line/arguments.hpp"
+#include "tools/command_line/help.hpp"
+
 namespace {
 
-using command_line::numbers_in;
-using command_line::point_in;
+using namespace command_line;
 using testing::ElementsAre;
 
-/// Returns what a validator says of a text; empty: it accepts it.
-std::string verdict(const CLI::Validator& check, std::string text) {
-  return check(text);
+TEST(Checks, SayRuleAndValue) {
+  EXPECT_EQ(number_from(0, 1e9)("-1"), "must be from 0 to 1e9, got '-1'");
+  for (const char* text : {"nan", "inf", "", "x", "1x", " 1"}) EXPECT_NE(number_from(0, 1e9)(text), "") << text;
+  for (const char* text : {"0", "+1", "1e9", "1E3", ".5"}) EXPECT_EQ(number_from(0, 1e9)(text), "") << text;
+  EXPECT_EQ(whole_from(1, 4)("2.5"), "must be a whole number from 1 to 4, got '2.5'");
+  EXPECT_EQ(one_of({"lcm", "none"})("lmc"), "must be lcm or none, got 'lmc'; did you mean 'lcm'?");
+  EXPECT_EQ(seed()("-1"), "must be a whole number from 0 to 9223372036854775807, got '-1'");
+  EXPECT_EQ(setting()("=3"), "must be PATH=VALUE, such as run.seed=3, got '=3'");
 }
 
 TEST(Checks, NumbersAreReadByTheirSeparatorAndCount) {
@@ -29,31 +36,13 @@ TEST(Checks, APointIsWithinTenThousandKilometers) {
   EXPECT_FALSE(point_in("1,2"));
 }
 
-TEST(Checks, ANumberOutOfRangeIsNamedWithItsRule) {
-  const CLI::Validator check = command_line::number_from(-1, 2.5);
-  EXPECT_EQ(verdict(check, "2.5"), "");
-  EXPECT_EQ(verdict(check, "+1"), "");
-  EXPECT_THAT(verdict(check, "2.6"), testing::AllOf(testing::HasSubstr("from -1 to 2.5"), testing::HasSubstr("'2.6'")));
-  EXPECT_NE(verdict(check, "nan"), "");
-  EXPECT_NE(verdict(check, "1x"), "");
-}
-
-TEST(Checks, AWholeNumberHasNoFraction) {
-  const CLI::Validator check = command_line::whole_from(1, 4);
-  EXPECT_EQ(verdict(check, "4"), "");
-  for (const char* text : {"0", "5", "1.5", "", "two"}) EXPECT_NE(verdict(check, text), "") << text;
-}
-
-TEST(Checks, ASeedIsAWholeNumberThatFits63Bits) {
-  EXPECT_EQ(verdict(command_line::seed(), "9223372036854775807"), "");
-  EXPECT_NE(verdict(command_line::seed(), "9223372036854775808"), "");
-  EXPECT_NE(verdict(command_line::seed(), "-1"), "");
-}
-
-TEST(Checks, AWordMustBeOneOfTheList) {
-  const CLI::Validator check = command_line::one_of({"lcm", "none"});
-  EXPECT_EQ(verdict(check, "none"), "");
-  EXPECT_THAT(verdict(check, "udp"), testing::HasSubstr("'udp'"));
+TEST(Checks, PrintBoundsAsPeopleWriteThem) {
+  EXPECT_EQ(bound_text(0), "0");
+  EXPECT_EQ(bound_text(1e9), "1e9");
+  EXPECT_EQ(bound_text(1e5), "100000");
+  EXPECT_EQ(bound_text(1e12), "1e12");
+  EXPECT_EQ(bound_text(1e-6), "1e-6");
+  EXPECT_EQ(bound_text(-60), "-60");
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 using verification::BenchFigures;
@@ -25,16 +24,6 @@ TEST(BenchFigures, HaveTheHashOfTheRunWithoutMeasurement) {
   run.run_for(1.5);
   EXPECT_EQ(verification::measure_bench(verification::land_scene(), 10, 1, briefly).run_hash,
             run.world().state().run_hash());
-}
-
-TEST(BenchFigures, AreTheSameWorkInAChildProcess) {
-  const BenchFigures here = verification::measure_bench(verification::sea_scene(), 10, 1, briefly);
-  const BenchFigures apart = verification::measure_bench_apart(verification::sea_scene(), 10, 1, briefly);
-  EXPECT_EQ(apart.run_hash, here.run_hash);
-  EXPECT_EQ(apart.messages_per_s, here.messages_per_s);
-  EXPECT_EQ(apart.step_s, 0.02);
-  EXPECT_GT(apart.cpu_ms_per_vehicle_s, 0);
-  EXPECT_GT(apart.real_time_factor, 0);
 }
 
 TEST(BenchFigures, CountRaysAndMessages) {
@@ -74,20 +63,6 @@ TEST(BenchFigures, FillEachColumnOfTheCsv) {
   EXPECT_THAT(verification::bench_csv_head(), StartsWith("scene,vehicles,threads,step_s,load_s,cpu_ms_per_vehicle_s,"));
   EXPECT_THAT(line, StartsWith("land,10,1,"));
   EXPECT_THAT(line, HasSubstr(",0000000000000abc,"));
-}
-
-TEST(BenchFigures, WrongSettingIsTheSameErrorFromAChildProcess) {
-  const auto error_lines = [](const auto& measure) -> std::vector<std::string> {
-    try {
-      measure(verification::land_scene(), 10, 1, verification::BenchOptions{0.5, 1, {"physics.step_s=-1"}});
-    } catch (const sim::ConfigError& error) {
-      return error.lines();
-    }
-    return {};
-  };
-  const auto apart = error_lines(verification::measure_bench_apart);
-  EXPECT_EQ(apart, error_lines(verification::measure_bench));
-  EXPECT_THAT(apart, ElementsAre(HasSubstr("'step_s' must be")));
 }
 
 }  // namespace

@@ -58,26 +58,4 @@ TEST(BenchScene, NamesAreDifferentAndFound) {
   EXPECT_EQ(verification::find_bench_scene("moon"), nullptr);
 }
 
-TEST(BenchScene, RoversOfTheCrowdPushAgainstEachOther) {
-  BenchRun run(verification::crowd_scene(), 25);
-  run.run_for(3);
-  int contacts = 0;
-  for (int i = 0; i < 100; ++i) {
-    run.step();
-    contacts += run.world().physics().last_step().contacts;
-  }
-  // Wheels and caster make three contacts of each rover with the ground; a push makes at least one more of two rovers.
-  EXPECT_GT(contacts / 100.0 / 25, 3.5);
-  EXPECT_GT(run.world().physics().quick_steps(), 0);
-}
-
-TEST(BenchScene, EveryModemOfTheAcousticSceneReceivesEveryMessage) {
-  BenchRun run(verification::acoustics_scene(), 10);
-  const auto flights = [&] { return run.world().acoustics().flights(); };
-  run.run_for(10);
-  const std::int64_t begin = flights();
-  run.run_for(10);  // each of ten sends once, and nine receive it
-  EXPECT_EQ(flights() - begin, 90);
-}
-
 }  // namespace

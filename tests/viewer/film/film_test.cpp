@@ -3,13 +3,13 @@
 
 #include <gmock/gmock.h>
 
-#include <filesystem>
 #include <fstream>
 
 #include "shoal/estimate_t.hpp"
 #include "shoal/sim_state_t.hpp"
 #include "sim/image/image_file.hpp"
 #include "tests/experiment/replay/replay_fixture.hpp"
+#include "tests/viewer/film/film_of_a_log.hpp"
 #include "viewer/film/camera_rig.hpp"
 #include "viewer/film/film_source.hpp"
 #include "viewer/film/scene_painter.hpp"
@@ -17,8 +17,9 @@
 
 namespace {
 
+using namespace film_of_a_log;
+
 using test::driven_world;
-using test::forward;
 using test::RecordedRun;
 using testing::HasSubstr;
 
@@ -26,29 +27,6 @@ std::string png_text(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
-
-class FilmTest : public test::ReplayTest {
- protected:
-  viewer::FilmOptions options(const std::string& out) const {
-    viewer::FilmOptions film;
-    film.source = log;
-    film.out = folder.file(out);
-    film.format = {80, 60, 10};
-    film.cameras = {"chase:r1"};
-    film.overlays = viewer::parse_overlays("all");
-    film.quiet = true;
-    film.threads = 2;
-    return film;
-  }
-  std::string film_error(const viewer::FilmOptions& film) const {
-    try {
-      viewer::make_film(film);
-    } catch (const std::exception& error) {
-      return error.what();
-    }
-    return "no error";
-  }
-};
 
 TEST_F(FilmTest, ShowsTheRunOfALogWhereItWas) {
   record(driven_world());
@@ -138,52 +116,6 @@ TEST_F(FilmTest, DrawsTheEstimatesOfTheLog) {
   film.overlays.ellipses = false;
   viewer::make_film(film);
   EXPECT_NE(png_text(folder.file("with/frame_00000.png")), png_text(folder.file("without/frame_00000.png")));
-}
-
-TEST_F(FilmTest, NamesVehiclesAndCamerasThatAreMissing) {
-  record(driven_world());
-  const auto with_camera = [&](const std::string& camera) {
-    viewer::FilmOptions film = options("a.avi");
-    film.cameras = {camera};
-    return film_error(film);
-  };
-  EXPECT_THAT(with_camera("chase:r9"), HasSubstr("there is no vehicle 'r9' at 0.000 s; vehicles: r1"));
-  EXPECT_THAT(with_camera("from:r1/eye"), HasSubstr("there is no camera 'r1/eye'; this world has none"));
-  EXPECT_THAT(with_camera("chase"), HasSubstr("must be all, top,"));
-  EXPECT_THAT(with_camera("no.yaml"), HasSubstr("no.yaml"));
-  viewer::FilmOptions film = options("a.avi");
-  film.split = true;
-  EXPECT_THAT(film_error(film), HasSubstr("vehicle 'r1' has no camera for --split 2"));
-  EXPECT_FALSE(std::filesystem::exists(folder.file("a.avi")));
-}
-
-TEST_F(FilmTest, NamesWhatALogLacks) {
-  const std::string foreign = folder.file("foreign.lcm");
-  record(driven_world());
-  test::copy_log(log, foreign, [](const bridges::LogEvent& event) { return event.channel == "sim.info"; });
-  viewer::FilmOptions film = options("a.avi");
-  film.source = foreign;
-  EXPECT_THAT(film_error(film), HasSubstr("contains no sim.info, which describes the world"));
-  film.source = log;
-  film.load.seed = 4;
-  EXPECT_THAT(film_error(film), HasSubstr("--seed and --set are for worlds"));
-}
-
-TEST_F(FilmTest, CamerasSeeTheVehicleInTheMiddle) {
-  record(driven_world());
-  const auto source = viewer::open_film_source(log, {});
-  source->advance_to(sim::from_seconds(1));
-  const sim::Vector3d p_W = source->world().find_vehicle("r1")->X_WV().translation();
-  viewer::SceneView like;
-  like.optics.width = 160, like.optics.height = 120;
-  for (const char* text : {"chase:r1", "orbit:r1", "top:r1", "top", "all"}) {
-    const auto rig = viewer::make_camera_rig(text, source->world(), like);
-    const viewer::SceneView view = rig->view(0);
-    const auto pixel = sim::Optics(view.optics).project(view.X_WS.inverse() * p_W);
-    ASSERT_TRUE(pixel) << text;
-    EXPECT_NEAR(pixel->x(), 80, 16) << text;
-    EXPECT_NEAR(pixel->y(), 60, 16) << text;
-  }
 }
 
 }  // namespace

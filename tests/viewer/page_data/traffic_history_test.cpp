@@ -3,32 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "shoal/message_codec.hpp"
-#include "shoal/sim_sound_t.hpp"
+#include "tests/viewer/page_data/traffic_history_fixture.hpp"
 
 namespace {
 
-/// A message of 5 bytes and 0.4 s.
-void send(viewer::TrafficCounts& counts, const std::string& kind = "message") {
-  shoal::sim_sound_t sound{};
-  sound.source = "a/modem";
-  sound.kind = kind;
-  sound.bytes = 5;
-  sound.duration_us = 400'000;
-  counts.take("sim.sound", shoal::encode(sound));
-}
-
-TEST(TrafficCounts, SumBytesAndTimeOfEachSenderWithoutNoise) {
-  viewer::TrafficCounts counts;
-  for (int i = 0; i < 3; ++i) send(counts);
-  send(counts, "noise");
-  ASSERT_EQ(counts.senders().size(), 1u);
-  const auto& [name, sender] = *counts.senders().begin();
-  EXPECT_EQ(name, "a/modem");
-  EXPECT_EQ(sender.count, 3);
-  EXPECT_EQ(sender.bytes, 15);
-  EXPECT_EQ(sender.sending_us, 1'200'000);
-}
+using namespace traffic_history_fixture;
 
 TEST(TrafficHistory, ARewindGivesTheCountsOfThen) {
   viewer::TrafficCounts counts;

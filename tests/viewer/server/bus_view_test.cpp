@@ -1,56 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
-#include <mutex>
-
 #include "tests/viewer/server/log_page.hpp"
-
-// The live page of what is on a bus.
+#include "tests/viewer/server/served_bus.hpp"
 
 namespace {
 
+using namespace served_bus;
+
+// The live page of what is on a bus.
+
 using testing::HasSubstr;
-
-/// The page of a bus, served in another thread.  The test puts messages on the bus.
-class ServedBus {
- public:
-  ServedBus() : view_(test::LogPage::options(), "test", "udpm://bus") {
-    thread_ = std::thread([this] {
-      while (!end_) {
-        {
-          const std::lock_guard lock(mutex_);
-          view_.flush();
-        }
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      }
-    });
-  }
-  ~ServedBus() {
-    end_ = true;
-    thread_.join();
-  }
-  std::string url() const { return view_.url(); }
-  void publish(const std::string& channel, std::span<const std::byte> payload) {
-    const std::lock_guard lock(mutex_);
-    view_.message(channel, payload);
-  }
-  /// Puts the messages of a log on the bus, as fast as possible.  Returns the number of those on `ball.pose`.
-  std::int64_t play(const std::string& log) {
-    bridges::EventLogReader reader(log);
-    std::int64_t poses = 0;
-    while (const auto event = reader.next()) {
-      publish(event->channel, event->payload);
-      poses += event->channel == "ball.pose";
-    }
-    return poses;
-  }
-
- private:
-  std::mutex mutex_;
-  viewer::BusView view_;
-  std::atomic<bool> end_ = false;
-  std::thread thread_;
-};
 
 TEST(BusView, ShowsTheSceneAndTheTimeOfTheRunOnTheBus) {
   const test::TrafficLog log;
@@ -64,16 +24,6 @@ TEST(BusView, ShowsTheSceneAndTheTimeOfTheRunOnTheBus) {
   EXPECT_EQ(page.text("scene")["bodies"][0]["name"], "ball/body");
   const auto status = page.text("status", [](const auto& text) { return text["time_us"] == 10'000'000; });
   EXPECT_EQ(status["ended"], nullptr);
-}
-
-/// A viewer may join the playback of a log at any time.
-TEST(BusView, SaysThatItWaitsForTheScene) {
-  ServedBus bus;
-  test::ViewPage page(bus.url());
-  EXPECT_EQ(page.text("status")["waits_for"], "waits for sim.scene");
-  const test::TrafficLog log;
-  bus.play(log.path);
-  page.text("status", [](const auto& text) { return text["waits_for"] == ""; });
 }
 
 TEST(BusView, PassesOnTheMessagesOfSubscribedChannels) {
@@ -95,25 +45,6 @@ TEST(BusView, PassesOnTheMessagesOfSubscribedChannels) {
   EXPECT_TRUE(found) << utime;
 }
 
-/// On another channel a pose may be a goal.
-TEST(BusView, TakesAPoseForAnEstimateOnVehicleEstimate) {
-  ServedBus bus;
-  test::ViewPage page(bus.url());
-  page.text("hello");
-  shoal::pose_t pose{};
-  pose.utime = 5'000'000;
-  pose.pos[0] = 1;
-  pose.orientation[0] = pose.orientation[3] = std::sqrt(0.5);  // 90 degrees to the left
-  bus.publish("r2.goal", shoal::encode(pose));
-  bus.publish("r1.estimate", shoal::encode(pose));
-  const auto items = page.text("estimates")["items"];
-  ASSERT_EQ(items.size(), 1u);
-  EXPECT_EQ(items[0]["vehicle"], "r1");
-  EXPECT_EQ(items[0]["time_us"], 5'000'000);
-  EXPECT_EQ(items[0]["pose"][0], 1);
-  EXPECT_NEAR(items[0]["pose"][6].get<double>(), std::sqrt(0.5), 1e-12);
-}
-
 TEST(BusView, CountsMessagesAndSaysWhoHeardWhom) {
   const test::TrafficLog log;
   ServedBus bus;
@@ -132,45 +63,6 @@ TEST(BusView, CountsMessagesAndSaysWhoHeardWhom) {
            web_test::Json::array(
                {{{"from", "a/modem"}, {"to", "b/modem"}, {"sent", 10}, {"received", 5}, {"lost", {{"noise", 5}}}}});
   });
-}
-
-TEST(BusView, APageThatConnectsAgainGetsAllThatHolds) {
-  const test::TrafficLog log;
-  ServedBus bus;
-  {
-    test::ViewPage before(bus.url());
-    bus.play(log.path);
-    before.text("status", [](const auto& text) { return text["time_us"] == 10'000'000; });
-  }
-  // Nothing more comes on the bus.
-  test::ViewPage page(bus.url());
-  EXPECT_EQ(page.text("hello")["world"], "fall");
-  page.text("status", [](const auto& text) { return text["time_us"] == 10'000'000; });
-  const test::ViewState state = page.state();
-  EXPECT_EQ(state.count, 1u);
-  EXPECT_EQ(state.time_us, 10'000'000);
-  EXPECT_EQ(test::ViewPage(bus.url()).text("scene")["bodies"][0]["name"], "ball/body");
-  test::ViewPage(bus.url()).text(
-      "links", [](const auto& links) { return links["items"].size() == 1 && links["items"][0]["received"] == 5; });
-}
-
-TEST(BusView, AnotherRunOnTheBusBringsItsOwnScene) {
-  const test::TrafficLog log;
-  const test_support::ScratchFolder folder;
-  {
-    test::RecordedRun run(
-        "shoal: 1\nname: other\nobjects: [{name: cube, position_m: [0, 0, 5], parts: [{shape: box, mass_kg: 1}]}]\n",
-        folder.file("other.lcm"));
-    bridges::ViewPublisher view(run.gate, run.world, {}, [] { return true; });
-    view.after_step();
-  }
-  ServedBus bus;
-  test::ViewPage page(bus.url());
-  bus.play(log.path);
-  EXPECT_EQ(page.text("scene")["world"], "fall");
-  bus.play(folder.file("other.lcm"));
-  EXPECT_EQ(page.text("hello", [](const auto& hello) { return hello["world"] != "fall"; })["world"], "other");
-  EXPECT_EQ(page.text("scene")["bodies"][0]["name"], "cube/body");
 }
 
 TEST(BusView, RefusesToSteerAndSaysHow) {

@@ -3,44 +3,17 @@
 
 #include <gmock/gmock.h>
 
-#include <fstream>
 #include <optional>
 #include <random>
 
 #include "bridges/log/record_file.hpp"
-#include "experiment/replay/replay.hpp"
 #include "shoal/waypoints_command_t.hpp"
+#include "sim/world_file/load_world.hpp"
 #include "tests/viewer/server/log_page.hpp"
-
-// A log that is played, and another one beside it.
 
 namespace {
 
-using testing::HasSubstr;
-
-TEST(LogIndex, KnowsTheSpanAndTheEventsOfALog) {
-  const test::FallLog log;
-  const viewer::LogIndex index(log.path);
-  EXPECT_EQ(index.start_us(), 0);
-  EXPECT_EQ(index.end_us(), 3'000'000);
-  EXPECT_EQ(index.world(), "fall");
-  ASSERT_GE(index.occasions().size(), 1u);
-  EXPECT_EQ(index.occasions()[0].who, "half");
-  EXPECT_NEAR(static_cast<double>(index.occasions()[0].time_us), 1e6, 1e4);
-}
-
-TEST(LogIndex, SaysWhatALogLacks) {
-  const test_support::ScratchFolder folder;
-  const std::string path = folder.file("empty.lcm");
-  { test::RecordedRun run("shoal: 1\n", path); }
-  try {
-    const viewer::LogIndex index(path);
-    FAIL();
-  } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("empty.lcm: has neither sim.scene nor sim.bodies"));
-    EXPECT_THAT(error.what(), HasSubstr("`shoal view " + path + " --resimulate` runs its world again, and shows it"));
-  }
-}
+// A log that is played, and another one beside it.
 
 /// The log of a logger that was started a second after the run: its `sim.info` and `sim.scene` come after ten seconds.
 struct LateLog {
@@ -148,52 +121,6 @@ TEST(LogView, SendsTheEstimatesOfBothLogs) {
   EXPECT_TRUE(look(50'000)["items"].empty()) << "before the first one";
 }
 
-/// Logs with hashes, as `shoal run` writes them, differ where their hashes do.
-class LogDifference : public testing::Test {
- protected:
-  static std::string world(double z_m) {
-    return "shoal: 1\nrun: {hash_every_steps: 10}\nphysics: {step_s: 0.01}\nobjects: [{name: ball, parts: [{shape: "
-           "sphere, mass_kg: 1}], position_m: [0, 0, " +
-           std::to_string(z_m) + "]}]\n";
-  }
-  /// Records a second; `lift_at`: step at which a client moves the ball.
-  std::string record(const std::string& name, double z_m, std::int64_t lift_at = -1) {
-    test::RecordedRun run(world(z_m), folder_.file(name));
-    bridges::ViewPublisher view(run.gate, run.world, {}, [] { return true; });
-    view.after_step();
-    run.run(100, [&](std::int64_t step) {
-      if (step == lift_at) run.request("do", "{move: {name: ball, position_m: [0, 0, 9]}}");
-    });
-    return folder_.file(name);
-  }
-
-  test_support::ScratchFolder folder_;
-};
-
-TEST_F(LogDifference, IsTheFirstHashThatDiffers) {
-  const std::string a = record("a.lcm", 1), b = record("b.lcm", 1, 52);
-  const auto difference = viewer::first_difference(a, viewer::LogIndex(a), b, viewer::LogIndex(b));
-  ASSERT_TRUE(difference);
-  EXPECT_EQ(difference->by, "sim.hash");
-  EXPECT_EQ(difference->step, 60);
-  EXPECT_EQ(difference->time_us, 600'000);
-}
-
-TEST_F(LogDifference, IsThatOfAReplay) {
-  const std::string a = record("a.lcm", 1), b = record("b.lcm", 2);
-  const auto difference = viewer::first_difference(a, viewer::LogIndex(a), b, viewer::LogIndex(b));
-  ASSERT_TRUE(difference);
-  // The log of b in the world of a.
-  experiment::ReplayOptions options;
-  options.log = b;
-  options.world = folder_.file("a.yaml");
-  std::ofstream(options.world) << world(1);
-  options.quiet = true;
-  const experiment::ReplayOutcome replayed = experiment::replay(options);
-  ASSERT_TRUE(replayed.first);
-  EXPECT_EQ(replayed.first->step, *difference->step);
-}
-
 /// A log of ten seconds with a path to x = k m after k seconds, for k = 1 and 9.
 struct PathLog {
   PathLog() {
@@ -244,6 +171,46 @@ TEST(LogView, RefusesToSteer) {
   const auto reply = page.text("reply");
   EXPECT_EQ(reply["id"], 7);
   EXPECT_EQ(reply["ok"], false);
+}
+
+TEST(LogView, CountsMessagesUpToTheTimeShown) {
+  const test::TrafficLog log;
+  test::LogPage page(log);
+  page.pause();
+  for (const std::int64_t time_us : {9'500'000, 500'000, 5'500'000}) {
+    page.seek(time_us);
+    const auto json = page.text_when("channels", [&](const auto& channels) { return channels["time_us"] == time_us; });
+    std::int64_t count = 0;
+    for (const auto& item : json["items"])
+      if (item["name"] == "ball.pose") {
+        count = item["count"];
+        EXPECT_EQ(item["type"], "shoal.pose_t");
+        EXPECT_EQ(item["bytes"], count * 144);
+      }
+    // Up to the last poses of the bodies at this time, some thirty per second.
+    EXPECT_NEAR(static_cast<double>(count), static_cast<double>(time_us) / 10'000, 5);
+  }
+}
+
+TEST(LogView, SaysWhoHeardWhomUpToTheTimeShown) {
+  const test::TrafficLog log;
+  test::LogPage page(log);
+  page.pause();
+  for (const int seconds : {9, 0, 4}) {
+    const std::int64_t time_us = seconds * 1'000'000 + 500'000;
+    page.seek(time_us);
+    const auto json = page.text_when("links", [&](const auto& links) { return links["time_us"] == time_us; });
+    if (seconds == 0) {
+      EXPECT_TRUE(json["items"].empty());
+      continue;
+    }
+    const int lost = seconds / 2;
+    EXPECT_EQ(json["items"], web_test::Json::array({{{"from", "a/modem"},
+                                                     {"to", "b/modem"},
+                                                     {"sent", seconds},
+                                                     {"received", seconds - lost},
+                                                     {"lost", {{"noise", lost}}}}}));
+  }
 }
 
 }  // namespace

@@ -7,13 +7,14 @@
 
 #include "experiment/drive/drive_error.hpp"
 #include "tests/experiment/replay/replay_fixture.hpp"
+#include "tests/viewer/server/page_drive_fixture.hpp"
 #include "viewer/server/forms_text.hpp"
 
 namespace {
 
+using namespace page_drive_fixture;
 using namespace std::chrono_literals;
-using Json = nlohmann::json;
-using testing::AllOf;
+
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -27,36 +28,6 @@ std::string refusal(const std::string& text) {
   }
   return "";
 }
-
-/// A rover that pages drive, with the time of the test.
-class PageDriveTest : public test::ReplayTest {
- protected:
-  /// Positions of the controls of a page.
-  static viewer::PageDrive::Request ahead(double forward) { return {"r1", "twist", {{"forward", forward}}}; }
-
-  std::string refused(int client, const viewer::PageDrive::Request& request, const sim::World& world,
-                      std::chrono::milliseconds at) {
-    try {
-      drive.take(client, request, world, start + at);
-    } catch (const experiment::DriveError& error) {
-      return error.what();
-    }
-    return "";
-  }
-  /// Speeds that are commanded at a time.
-  std::vector<double> speeds(const sim::World& world, std::chrono::milliseconds at, bool paused = false) {
-    std::vector<double> all;
-    drive.run(world, start + at, paused, [&](const std::string& vehicle, const std::string& channel, auto payload) {
-      EXPECT_EQ(vehicle, "r1");
-      EXPECT_EQ(channel, "r1.drive.cmd");
-      all.push_back(shoal::decode<shoal::twist_command_t>(payload, shoal::Finite::required).forward_mps);
-    });
-    return all;
-  }
-
-  const viewer::PageDrive::Clock::time_point start{1h};
-  viewer::PageDrive drive{experiment::read_drive_profile("")};
-};
 
 TEST_F(PageDriveTest, StopsAFifthOfASecondAfterTheLastMessage) {
   const test::RecordedRun run(test::driven_world(), log);
@@ -140,33 +111,6 @@ TEST_F(PageDriveTest, ADrivenRunReplaysEqual) {
   const experiment::ReplayOutcome outcome = again();
   EXPECT_EQ(outcome.exit_code(), 0) << outcome.to_text();
   EXPECT_EQ(outcome.steps, test::steps);
-}
-
-TEST_F(PageDriveTest, FormsTellWhatTheWorldTakes) {
-  const test::RecordedRun run(test::driven_world("events: [{name: storm, do: [{log: now}]}]\n"), log);
-  const Json forms = Json::parse(viewer::forms_text(run.world, drive.profile()));
-  EXPECT_EQ(forms["op"], "forms");
-  EXPECT_EQ(forms["events"], Json({"storm"}));
-  EXPECT_EQ(forms["objects"], Json({"crate", "ground"}));
-  EXPECT_EQ(forms["drives"]["r1"][0], Json({{"kind", "twist"}, {"axes", {"forward", "turn"}}}));
-  // Only an actuator can be dead, only a device with noise can be biased.
-  const auto faults = [&](const char* type) { return forms["types"][type]["faults"].get<std::vector<std::string>>(); };
-  EXPECT_THAT(faults("lidar"), AllOf(Contains("biased"), Not(Contains("dead"))));
-  EXPECT_THAT(faults("differential_drive"), AllOf(Contains("dead"), Contains("partial"), Not(Contains("biased"))));
-  // Each action has its main key first.
-  ASSERT_FALSE(forms["actions"].empty());
-  for (const Json& action : forms["actions"]) EXPECT_EQ(action["keys"][0]["key"], action["main"]) << action["word"];
-}
-
-TEST_F(PageDriveTest, FormsOfferToDriveTheSegwayThroughItsProgram) {
-  const test::RecordedRun run("shoal: 1\nvehicles: [{name: segway1, file: segway_rmp.yaml}]\n", log);
-  const Json forms = Json::parse(viewer::forms_text(run.world, drive.profile()));
-  EXPECT_EQ(forms["drives"]["segway1"][0], Json({{"kind", "twist"}, {"axes", {"forward", "turn"}}}));
-  drive.take(1, {"segway1", "", {{"forward", 1}}}, run.world, start);
-  std::vector<std::string> channels;
-  drive.run(run.world, start, false,
-            [&](const std::string&, const std::string& channel, auto) { channels.push_back(channel); });
-  EXPECT_THAT(channels, ElementsAre("segway1.balance.cmd"));
 }
 
 }  // namespace

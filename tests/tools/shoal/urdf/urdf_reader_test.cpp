@@ -4,25 +4,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-
-#include "tests/scratch_folder.hpp"
 #include "tests/tools/shoal/urdf/urdf_texts.hpp"
+#include "tools/shoal/urdf/imported_meshes.hpp"
 
 namespace {
 
 using test::import_error;
-using test::joint_text;
+using test::imported;
 using test::link_text;
-using test::pair_text;
+using test::notes_of;
 using test::robot_text;
-using testing::HasSubstr;
-
-const std::string range = R"(<limit lower="-1" upper="2" effort="3" velocity="4"/>)";
-
-std::string shape_error(const std::string& geometry) {
-  return import_error(robot_text(link_text("a", "<collision><geometry>" + geometry + "</geometry></collision>")));
-}
 
 TEST(UrdfReader, ReadsShapesColorsAndTheCommentBeforeTheRobot) {
   const tools::UrdfRobot robot = tools::read_urdf(
@@ -61,50 +52,6 @@ TEST(UrdfReader, RefusesWhatIsNotUrdf) {
   EXPECT_EQ(import_error(robot_text("")), "r.urdf:1: a robot needs a <link>");
 }
 
-TEST(UrdfReader, RefusesXacroWithAHint) {
-  EXPECT_EQ(import_error(robot_text("<xacro:property name=\"x\" value=\"1\"/>\n")),
-            "r.urdf:2: <xacro:property> is xacro, not URDF: run `xacro FILE > robot.urdf` first");
-  EXPECT_EQ(shape_error("<sphere radius=\"${r}\"/>"),
-            "r.urdf:2: link 'a': 'radius' is an expression of xacro, '${r}': run `xacro FILE > robot.urdf` first");
-  const test_support::ScratchFolder folder;
-  const std::string path = folder.file("arm.urdf.xacro");
-  std::ofstream(path) << robot_text(link_text("a"));
-  EXPECT_THROW(
-      {
-        try {
-          tools::read_urdf_file(path);
-        } catch (const sim::ConfigError& error) {
-          EXPECT_EQ(error.what(), path + ": is xacro, not URDF: run `xacro " + path + " > robot.urdf` first");
-          throw;
-        }
-      },
-      sim::ConfigError);
-}
-
-TEST(UrdfReader, DoesNotExpandEntities) {
-  const std::string urdf = "<!DOCTYPE robot [<!ENTITY file SYSTEM \"file:///etc/passwd\"> <!ENTITY x \"y\">]>\n" +
-                           robot_text(link_text("a&x;&file;b"));
-  const tools::UrdfRobot robot = tools::read_urdf(urdf, "r.urdf");
-  EXPECT_EQ(robot.links.at(0).name, "a&x;&file;b");
-  ASSERT_EQ(robot.notes.size(), 1u);
-  EXPECT_EQ(robot.notes[0].text, "the document type is not read; its entities are not expanded");
-}
-
-TEST(UrdfReader, NamesLineRuleAndValueOfAWrongShape) {
-  EXPECT_EQ(shape_error("<sphere radius=\"-1\"/>"), "r.urdf:2: link 'a': 'radius' must be > 0, got -1");
-  EXPECT_EQ(shape_error("<sphere radius=\"1e8\"/>"),
-            "r.urdf:2: link 'a': 'radius' must be at most 1e7 m, got 100000000");
-  EXPECT_EQ(shape_error("<sphere/>"), "r.urdf:2: link 'a': <sphere> needs the attribute 'radius'");
-  EXPECT_EQ(shape_error("<sphere radius=\"1 2\"/>"),
-            "r.urdf:2: link 'a': 'radius' must be a number between -1e9 and 1e9, got '1 2'");
-  EXPECT_EQ(shape_error("<box size=\"1 nan 1\"/>"),
-            "r.urdf:2: link 'a': 'size' must be 3 numbers between -1e9 and 1e9, got '1 nan 1'");
-  EXPECT_EQ(shape_error("<box size=\"1 -2 1\"/>"), "r.urdf:2: link 'a': 'size' must be > 0, got -2");
-  EXPECT_EQ(shape_error("<cone/>"),
-            "r.urdf:2: link 'a': the shape must be one of: box, capsule, cylinder, mesh, sphere, got <cone>");
-  EXPECT_EQ(shape_error(""), "r.urdf:2: link 'a': <geometry> must have a shape");
-}
-
 TEST(UrdfReader, NamesLineRuleAndValueOfAWrongInertial) {
   const auto inertial_error = [](const std::string& inertial) {
     return import_error(robot_text("<link name=\"a\">\n<inertial>\n" + inertial + "</inertial></link>"));
@@ -122,52 +69,17 @@ TEST(UrdfReader, NamesLineRuleAndValueOfAWrongInertial) {
       "needs none");
 }
 
-TEST(UrdfReader, NamesLineRuleAndValueOfAWrongJoint) {
-  EXPECT_EQ(import_error(pair_text("floating")),
-            "r.urdf:4: joint 'j': a joint of type 'floating' can only lead from the root, a link without mass and "
-            "shapes, to the one link that carries all others; Shoal has hinges and sliders");
-  EXPECT_THAT(import_error(pair_text("planar")), HasSubstr("a joint of type 'planar' can only lead from the root"));
-  EXPECT_EQ(import_error(pair_text("hinge")),
-            "r.urdf:4: joint 'j': 'type' must be one of: continuous, fixed, floating, planar, prismatic, revolute, got "
-            "'hinge'");
-  EXPECT_EQ(import_error(pair_text("revolute", "\n<limit lower=\"1\" upper=\"0\" effort=\"1\" velocity=\"1\"/>")),
-            "r.urdf:5: joint 'j': 'lower' must not be above 'upper', got 1 and 0");
-  EXPECT_EQ(import_error(pair_text("revolute", "<limit lower=\"nan\" upper=\"1\" effort=\"1\" velocity=\"1\"/>")),
-            "r.urdf:4: joint 'j': 'lower' must be a number, got 'nan'");
-  EXPECT_EQ(import_error(pair_text("revolute", range + "<dynamics damping=\"-1\"/>")),
-            "r.urdf:4: joint 'j': 'damping' must be >= 0, got -1");
-  EXPECT_EQ(import_error(pair_text("revolute", range + "\n<axis xyz=\"0 0 0\"/>")),
-            "r.urdf:5: joint 'j': the axis must not be zero");
-  EXPECT_EQ(import_error(pair_text("fixed", "<parent link=\"a\"/>")),
-            "r.urdf:4: joint 'j': has more than one <parent>");
+TEST(DecorativeFault, ARobotWithoutNameGetsThatOfTheFile) {
+  const tools::ImportedVehicle vehicle = imported("<robot>\n" + link_text("a") + "</robot>");
+  EXPECT_EQ(vehicle.name, "r");
+  EXPECT_EQ(notes_of(vehicle), "r.urdf:1: the robot has no name: it gets that of the file\n");
 }
 
-TEST(UrdfReader, RefusesLinksThatAreNoTree) {
-  const std::string a = link_text("a"), b = link_text("b"), c = link_text("c");
-  const auto joint = [](const std::string& name, const std::string& parent, const std::string& child) {
-    return "<joint name=\"" + name + "\" type=\"fixed\"><parent link=\"" + parent + "\"/><child link=\"" + child +
-           "\"/></joint>\n";
-  };
-  EXPECT_EQ(import_error(robot_text(a + a)), "r.urdf:3: there are two links 'a'");
-  EXPECT_EQ(import_error(robot_text(a + b + joint("j", "a", "b") + joint("j", "a", "b"))),
-            "r.urdf:5: there are two joints 'j'");
-  EXPECT_EQ(import_error(robot_text(a + joint("j", "a", "x"))), "r.urdf:3: joint 'j': there is no link 'x'");
-  EXPECT_EQ(import_error(robot_text(a + b + c + joint("j", "a", "c") + joint("k", "b", "c"))),
-            "r.urdf:6: joint 'k': link 'c' already has the parent joint 'j': a URDF is a tree");
-  EXPECT_EQ(import_error(robot_text(a + b + joint("j", "a", "b") + joint("k", "b", "a"))),
-            "r.urdf:2: each link has a parent: the joints form a loop");
-  EXPECT_EQ(import_error(robot_text(a + b + c + joint("j", "b", "c") + joint("k", "c", "b"))),
-            "r.urdf:3: link 'b': is in a loop of joints");
-}
-
-TEST(UrdfReader, BoundsSizeDepthAndCounts) {
-  EXPECT_EQ(import_error(std::string(tools::max_urdf_bytes + 1, ' ')), "r.urdf: must be at most 16 MiB");
-  std::string deep;
-  for (int i = 0; i < 2000; ++i) deep += "<robot>";
-  EXPECT_EQ(import_error(deep), "r.urdf:1: elements are nested too deeply");
-  std::string links;
-  for (std::size_t i = 0; i <= tools::max_urdf_links; ++i) links += "<link name=\"l" + std::to_string(i) + "\"/>";
-  EXPECT_EQ(import_error(robot_text(links)), "r.urdf:1: a robot must have at most 2000 links, got 2001");
+TEST(DecorativeFault, UnknownElementsAreNoted) {
+  EXPECT_EQ(notes_of(imported(robot_text(link_text("a", "<sensor/>") +
+                                         "<gazebo reference=\"a\"><mu1>1</mu1></gazebo>\n<actuator/>\n"))),
+            "r.urdf:3: <gazebo> is not imported\nr.urdf:4: <actuator> is not imported\n"
+            "r.urdf:2: link 'a': <sensor> is not imported\n");
 }
 
 }  // namespace

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/actions/target_choice.hpp"
+
+#include <gmock/gmock.h>
+
+#include <set>
+
+#include "sim/random/random.hpp"
+#include "sim/script/action.hpp"
+#include "tests/sim/config/read_yaml.hpp"
+
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+std::vector<std::string> errors_of(const std::string& yaml, sim::TargetChoice& target) {
+  return test::errors_of_reading(yaml, [&](sim::ParamReader& in) {
+    for (const char* name : {"ball", "crate", "cart"}) in.declare(sim::movable_kind, name);
+    target.read(in, "name");
+  });
+}
+
+TEST(TargetChoice, IsOneNameOrOneOfSeveral) {
+  sim::TargetChoice target;
+  EXPECT_THAT(errors_of("{name: ball}", target), IsEmpty());
+  EXPECT_THAT(target.names, ElementsAre("ball"));
+  EXPECT_THAT(errors_of("{one_of: [ball, cart]}", target), IsEmpty());
+  EXPECT_THAT(target.names, ElementsAre("ball", "cart"));
+}
+
+TEST(TargetChoice, SaysWhatIsWrong) {
+  for (const auto& [yaml, text] :
+       std::map<std::string, std::string>{{"{}", "needs either 'name' or 'one_of'"},
+                                          {"{name: ball, one_of: [cart]}", "needs either 'name' or 'one_of', not both"},
+                                          {"{one_of: []}", "'one_of' must name at least one"},
+                                          {"{name: ''}", "'name' must name a vehicle or an object"},
+                                          {"{name: bal}", "did you mean 'ball'?"}}) {
+    sim::TargetChoice target;
+    EXPECT_THAT(errors_of(yaml, target), testing::Contains(HasSubstr(text))) << yaml;
+  }
+}
+
+TEST(TargetChoice, DrawsEachOfSeveralAndNothingForOne) {
+  sim::TargetChoice target;
+  target.names = {"ball", "crate", "cart"};
+  sim::Random random(1, "target"), untouched(1, "target");
+  std::set<std::string> drawn;
+  for (int i = 0; i < 100; ++i) drawn.insert(target.choose(random));  // one is missing with (2/3)^100
+  EXPECT_EQ(drawn.size(), 3u);
+  sim::Random fresh(1, "target");
+  target.names = {"ball"};
+  EXPECT_EQ(target.choose(fresh), "ball");
+  EXPECT_EQ(fresh.uniform(), untouched.uniform());
+}
+
+}  // namespace

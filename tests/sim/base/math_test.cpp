@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sim/base/math.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace {
+
+using sim::Matrix3d;
+using sim::Vector3d;
+using std::numbers::pi;
+
+TEST(Math, RollPitchYawTurnAboutFixedAxesInThisOrder) {
+  // A quarter turn about x takes y to z; the following one about z leaves z as it is.
+  const Matrix3d R = sim::rotation_from_rpy({pi / 2, 0, pi / 2});
+  EXPECT_TRUE((R * Vector3d::UnitY()).isApprox(Vector3d::UnitZ()));
+  EXPECT_TRUE((R * Vector3d::UnitX()).isApprox(Vector3d::UnitY()));
+  // Nose down by positive pitch.
+  EXPECT_TRUE((sim::rotation_from_rpy({0, pi / 2, 0}) * Vector3d::UnitX()).isApprox(-Vector3d::UnitZ()));
+}
+
+TEST(Math, AnglesComeBackFromTheRotation) {
+  for (const Vector3d& rpy : {Vector3d(0.1, -0.2, 0.3), Vector3d(3, 1.5, -3), Vector3d(-2, -1.5, 2)})
+    EXPECT_TRUE(sim::rpy_from_rotation(sim::rotation_from_rpy(rpy)).isApprox(rpy, 1e-12)) << rpy.transpose();
+}
+
+TEST(Math, APitchOfNinetyDegreesGivesTheSameRotationAgain) {
+  const Matrix3d R = sim::rotation_from_rpy({0.4, pi / 2, -0.3});
+  EXPECT_TRUE(sim::rotation_from_rpy(sim::rpy_from_rotation(R)).isApprox(R, 1e-7));  // of the square root of epsilon
+}
+
+TEST(Math, APoseMapsPointsOfItsFrameToTheOther) {
+  const sim::Pose X_AB = sim::make_pose({1, 2, 3}, {0, 0, pi / 2});
+  EXPECT_TRUE((X_AB * Vector3d(1, 0, 0)).isApprox(Vector3d(1, 3, 3)));
+  EXPECT_NEAR(sim::yaw_of(X_AB.linear()), pi / 2, 1e-15);
+}
+
+TEST(Math, AnglesAreWrappedToTheHalfOpenTurn) {
+  EXPECT_EQ(sim::wrap_angle(0.5), 0.5);
+  EXPECT_NEAR(sim::wrap_angle(2 * pi + 0.5), 0.5, 1e-15);
+  EXPECT_NEAR(sim::wrap_angle(-7 * pi / 2), pi / 2, 1e-14);
+  EXPECT_EQ(sim::wrap_angle(pi), pi);
+  EXPECT_EQ(sim::wrap_angle(-pi), pi);
+  EXPECT_NEAR(sim::wrap_angle(1e6 * 2 * pi + 1), 1, 1e-8);
+}
+
+TEST(Math, TheSmallestRotationTurnsOneDirectionIntoTheOther) {
+  const Vector3d from(1, 2, 3), to(-2, 0.5, 1);
+  const sim::Quaterniond q = sim::rotation_between(from, to);
+  EXPECT_TRUE((q * from.normalized()).isApprox(to.normalized(), 1e-12));
+  EXPECT_NEAR(q.angularDistance(sim::Quaterniond::Identity()), std::acos(from.normalized().dot(to.normalized())), 1e-9);
+}
+
+TEST(Math, TheMatrixOfACrossProductMultipliesAsIt) {
+  const Vector3d a(1, -2, 3), b(4, 5, -6);
+  EXPECT_TRUE((sim::cross_matrix(a) * b).isApprox(a.cross(b)));
+}
+
+}  // namespace
