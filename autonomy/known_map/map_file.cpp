@@ -42,7 +42,7 @@ struct MapKeys {
     if (free_thresh > occupied_thresh)
       in.error("free_thresh", fmt::format("'free_thresh' must be at most 'occupied_thresh', {}, got {}",
                                           occupied_thresh, free_thresh));
-    if (in.has("origin") && origin.z() != 0) in.error("origin", "'origin' must not be turned");
+    if (in.has("origin") && origin.z() != 0) in.error("origin", "'origin' must have yaw 0");
   }
 };
 

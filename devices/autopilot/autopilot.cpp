@@ -121,7 +121,7 @@ std::vector<sim::PlannedPlace> Autopilot::planned_places() const {
 
 void Autopilot::note_depth(const Eigen::Vector2d& p_W, double depth_m) {
   const std::string fault = sim::depth_fault(world_, p_W, depth_m);
-  if (!fault.empty()) warnings_.keep_for_end(who_, "it was commanded to a place whose " + fault);
+  if (!fault.empty()) warnings_.keep_for_end(who_, "it was commanded to a position whose " + fault);
 }
 
 void Autopilot::note_start_of_route() {

@@ -66,7 +66,7 @@ void check_level(AutopilotActuators& actuators, const HoldGains& attitude, const
   if (held) return warnings.note(place, who, up_to);
   warnings.warn(
       place, who,
-      up_to + ": faster, the Munk moment of the added mass turns it over" +
+      up_to + ": above it, the Munk moment of the added mass turns it over" +
           (std::isinf(needed_radps) ? ", for the thrusters do not control its tilt"
                                     : ", unless 'gains: attitude: bandwidth_radps' is above " + rounded(needed_radps)));
 }

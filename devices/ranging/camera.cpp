@@ -215,7 +215,7 @@ void Camera::change(const Params& params) {
   if (zoomed_fov_rad_ > 0) {
     next.optics.fov_rad = zoomed_fov_rad_;
     if (params.optics.fov_rad != given_fov_rad_ || next.optics.text() != params_.optics.text())
-      throw std::runtime_error("its lens is that of a camera that zooms, and cannot be set");
+      throw std::runtime_error("its lens belongs to a zooming camera, and cannot be set");
   }
   given_fov_rad_ = params.optics.fov_rad;
   params_ = std::move(next);

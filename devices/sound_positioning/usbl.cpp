@@ -17,7 +17,7 @@ void Usbl::Params::read(sim::ParamReader& in) {
   in.read("assumed_sound_speed_mps", assumed_sound_speed_mps, sim::between(100, 10000),
           "speed of sound that converts times to ranges; unset: the true one at the sensor");
   in.read("assumed_water", assumed_water,
-          "water of which the user knows: rays through it give positions; unset: straight lines");
+          "water that the user assumes: rays through it give positions; unset: straight lines");
   in.read("answer_dropout", answer_dropout, sim::between(0, 1),
           "probability that an answer is missed, drawn for each answer");
   in.read("range_noise", range_noise, "error of each range, m");

@@ -216,7 +216,7 @@ class BugPacker {
       throw std::runtime_error(
           fmt::format("{}: is of world '{}' with seed {}, but the run in {} is of '{}' with seed {}", record,
                       tail_->info.world, tail_->info.seed, directory_, run_->world, run_->seed));
-    if (!tail_->whole) left_out(fmt::format("{}: what is before {:.3f} s of simulated time", record, tail_->start_s));
+    if (!tail_->whole) left_out(fmt::format("{}: the part before {:.3f} s of simulated time", record, tail_->start_s));
     if (!tail_->short_of.empty()) left_out(tail_->short_of);
   }
 
@@ -237,12 +237,11 @@ class BugPacker {
     std::string text = "\nHow to look at it:\n";
     if (run_)
       text += fmt::format(
-          "  shoal run world.yaml --seed {} --duration {:g}    the run again; with --launch if its "
-          "programs took part\n",
+          "  shoal run world.yaml --seed {} --duration {:g}    reruns it; add --launch if its programs took part\n",
           run_->seed, run_->sim_time_s);
     if (!tail_) return text;
     text += tail_->replayable()
-                ? "  shoal replay record_tail.lcm    its end again, by the same build of shoal\n"
+                ? "  shoal replay record_tail.lcm    replays its end with the same build of shoal\n"
                 : "  record_tail.lcm has no snapshot at its start: it can be inspected, but not replayed.\n";
     return text +
            "  shoal log info record_tail.lcm    its channels\n"

@@ -36,8 +36,8 @@ const StudyRow* row_of(const LoadedStudy& study, const StudyRun& run, const std:
 std::string other_kind(const StudyRun& run, const StudyRow& row) {
   const RunKind own = kind_of(*run.record);
   if (row.shoal == own.version && row.processor == own.processor && row.c_library == own.c_library) return {};
-  return fmt::format("  that of the table is of shoal {}, {}, {}; this one of shoal {}, {}, {}\n", row.shoal,
-                     row.processor, row.c_library, own.version, own.processor, own.c_library);
+  return fmt::format("  the table has shoal {}, {}, {}; this is shoal {}, {}, {}\n", row.shoal, row.processor,
+                     row.c_library, own.version, own.processor, own.c_library);
 }
 
 std::string outcome_of(const StudyRun& run, const StudyRow* row, bool& equal) {

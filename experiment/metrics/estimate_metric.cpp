@@ -109,7 +109,7 @@ void EstimateMetric::warn_once(const std::string& channel, const std::string& wh
   if (what != warning_text_) {
     report_sample_count();
     warning_text_ = what;
-    warn(fmt::format("{}: {} (ignored, as are all more of this)", channel, what));
+    warn(fmt::format("{}: {} (ignored, as are all further ones of this kind)", channel, what));
   }
   ++ignored_;
 }

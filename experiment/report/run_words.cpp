@@ -133,7 +133,7 @@ std::string consistency_sentence(const RunMetric& metric) {
 
 std::string bound_sentence(const RunMetric& metric) {
   const auto rms_m = metric.value("rms_m");
-  if (!rms_m) return metric.name + ": no time was counted.";
+  if (!rms_m) return metric.name + ": no time was scored.";
   return fmt::format("{}: the reference for the error of {} is {} rms, with {} and {}.", metric.name,
                      metric.vehicle.empty() ? "the position" : metric.vehicle, length_text(*rms_m),
                      counted(metric.value("ranges").value_or(0), "range", "ranges"),

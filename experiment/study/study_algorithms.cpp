@@ -83,9 +83,9 @@ const std::vector<AlgorithmFigure>& algorithm_figures() {
   static const std::vector<AlgorithmFigure> figures{
       {"rms_m", "m", "rms of the horizontal error"},
       {"nees_mean", "1", "mean of the normalized error squared; 2 is consistent"},
-      {"inside_95_share", "1", "share of the estimates whose 95 % ellipse has the truth in it"},
+      {"inside_95_share", "1", "share of the estimates whose 95 % ellipse contains the truth"},
       {"ratio", "1", "rms over that of the bound"},
-      {"bytes_per_h", "B/h", "payload that a vehicle said"},
+      {"bytes_per_h", "B/h", "payload that a vehicle sent"},
       {time_of_event, "us", "CPU time of algorithm and driver for each report, packet and frame"}};
   return figures;
 }

@@ -115,7 +115,7 @@ void read_result(const LoadedStudy& study, bool any_version, StudyRun& run) {
   const std::string inputs = inputs_of(study, run);
   if (const auto stamp = read_stamp(run.directory)) {
     if (stamp->inputs != inputs)
-      run.failure = "its result is of other inputs: the study or its world has changed";
+      run.failure = "its result belongs to other inputs: the study or its world has changed";
     else if (!any_version && stamp->version != short_version())
       run.failure = "its result is of shoal " + stamp->version;
     else

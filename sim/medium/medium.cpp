@@ -24,7 +24,7 @@ Medium::Medium(const MediumConfig& config, double gravity_mps2, std::uint64_t se
   if (config.water) {
     column_.emplace(*config.water, gravity_mps2);
     if (const auto depth_m = unstable_at_m(*config.water, *column_))
-      log_warn("medium: water: 'profile' is lighter at {:g} m than above: such water would overturn", *depth_m);
+      log_warn("medium: water: 'profile' is lighter at {:g} m than above it: such water would overturn", *depth_m);
     current_.emplace(config.current, config.tides, seed);
     if (config.waves) waves_.emplace(*config.waves, gravity_mps2, seed);
   }

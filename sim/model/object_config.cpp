@@ -48,7 +48,7 @@ void ObjectConfig::check_keys(ParamReader& in) const {
   for (const char* key : {"joints", "self_collision"})
     if (in.has(key) && !in.has("bodies")) in.error(key, "'" + std::string(key) + "' goes with 'bodies'");
   if (fixed && in.has("bodies"))
-    in.error("fixed", "'fixed' goes with 'parts'; of 'bodies', a joint to 'world' holds one");
+    in.error("fixed", "'fixed' needs 'parts'; one of 'bodies' is held by a joint to 'world'");
   for (const BodyConfig& body : bodies)
     if (body.kinematic)
       in.error("bodies",

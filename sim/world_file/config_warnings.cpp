@@ -134,7 +134,7 @@ class ConfigCheck {
     const SpreadingConfig& spreading = world_.acoustics.spreading;
     if (!spreading.transition_range_m && spreading.factor == 2) return;
     warnings_.warn(place_of(*acoustics, "spreading"), "acoustics",
-                   "'spreading' has no effect: in this water sound travels along rays, and their tubes are the "
+                   "'spreading' has no effect: in this water sound travels along rays, whose ray tubes give the "
                    "spreading; remove it, or set 'propagation: straight'");
   }
 

@@ -26,7 +26,8 @@ void MarineOptions::declare(command_line::DeclaredOptions& options) {
   options
       .tuple(
           "follow_offset_m", {"ahead", "left"}, sim::any_place(),
-          [this](const auto& numbers) { follow_offset_m = numbers; }, "place beside that vehicle, by its course")
+          [this](const auto& numbers) { follow_offset_m = numbers; },
+          "position relative to that vehicle and its course")
       .needs({"follow"});
   options.text("leader", "VEHICLE", leader, "leader of the formation in which to keep a place; it must send its state");
   std::vector<std::string> formations = formation_names();
@@ -40,12 +41,12 @@ void MarineOptions::declare(command_line::DeclaredOptions& options) {
   options
       .tuple(
           "formation_offset_m", {"ahead", "left"}, sim::any_place(),
-          [this](const auto& numbers) { formation_offset = numbers; }, "place beside the leader, by its course")
+          [this](const auto& numbers) { formation_offset = numbers; }, "position relative to the leader and its course")
       .needs({"leader"});
   options.exactly_one({"waypoints_m", "circle_m", "zigzag_m", "follow", "leader"});
   // Parameters of all behaviors.
   options.flag("loop", loop, "restart the route after its last waypoint; without it the vehicle stops there");
-  options.number("speed_mps", speed_mps, 0.05, 10, "speed through the water; when it follows, the largest");
+  options.number("speed_mps", speed_mps, 0.05, 10, "speed through the water; the maximum when it follows");
   sending.declare(options, "its state");
 }
 

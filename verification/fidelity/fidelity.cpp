@@ -158,7 +158,7 @@ std::int64_t steps_to(double t, double step_s, const FidelityReference& referenc
   if (std::abs(static_cast<double>(steps) * step_s - t) > 1e-7)
     sim::throw_config_error(
         {sim::intern_file_name(reference.file), 0, 0}, "",
-        "a step of " + sim::number_text(step_s) + " s does not meet the row at t = " + sim::number_text(t) + " s");
+        "a step of " + sim::number_text(step_s) + " s does not reach the row at t = " + sim::number_text(t) + " s");
   return steps;
 }
 

@@ -144,7 +144,7 @@ void LogIndex::check(const std::string& path) const {
       ", so there is nothing to show: it was recorded by an earlier version of Shoal, with 'view:' "
       "switched off, or by a logger that was started after the run" +
       (has_info_ ? "; `shoal view " + path +
-                       " --resimulate` runs its world again, and shows it, if the log has the run from its start"
+                       " --resimulate` re-simulates and shows its world if the log has the run from its start"
                  : ""));
 }
 

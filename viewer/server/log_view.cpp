@@ -211,7 +211,7 @@ void LogView::serve_foxglove() {
   foxglove_.serve([this] { return foxglove_state(); },
                   [this](const FoxgloveView::Request& request) -> FoxgloveView::Answer {
                     if (request.kind != FoxgloveView::Request::Kind::playback)
-                      return {false, "this is a log, which cannot be steered"};
+                      return {false, "this is a log, which cannot be controlled"};
                     play_foxglove(request.playback);
                     return {true, ""};
                   });
@@ -277,7 +277,7 @@ void LogView::handle(const bridges::ViewRequest& request) {
       server_.reply(request.client, json_text({{"op", "reply"},
                                                {"id", message.value("id", Json())},
                                                {"ok", false},
-                                               {"text", "this is a log, which cannot be steered"}}));
+                                               {"text", "this is a log, which cannot be controlled"}}));
     }
   } catch (const Json::exception&) {
     server_.reply(request.client,

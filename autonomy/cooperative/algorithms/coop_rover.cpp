@@ -19,7 +19,8 @@ using autonomy::Ekf;
 /// counts when the vehicle moves on, and a vehicle that goes backwards seems to have turned.
 class CoopRoverFilter final : public EstimatorOf<CoopRoverFilter> {
  public:
-  static constexpr const char* meaning = "filter of the program coop_rover, on land: naive, who has GPS sends";
+  static constexpr const char* meaning =
+      "filter of the program coop_rover, on land: naive; only vehicles with GPS send";
   static constexpr bool at_sea = false;
 
   void start(const Setup& setup) override {

@@ -10,7 +10,7 @@ namespace {
 /// returns through others, but the error of a sender is the same in each of its ranges.
 class NaiveOfDeadReckoning final : public OwnFilterEstimator<NaiveOfDeadReckoning> {
  public:
-  static constexpr const char* meaning = "as naive, but each vehicle sends only its dead reckoning";
+  static constexpr const char* meaning = "like naive, but each vehicle sends only its dead reckoning";
 
   void start(const Setup& setup) override {
     need_bytes(setup, "naive_dr", position_bytes);

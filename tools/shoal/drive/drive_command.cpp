@@ -98,7 +98,7 @@ class PadControls final : public Controls {
   bool read(Clock::time_point now) override {
     if (device_) {
       if (device_->read()) return true;
-      throw experiment::DriveError("the gamepad is gone");
+      throw experiment::DriveError("the gamepad was disconnected");
     }
     // Events of a file, in their own time.
     if (!start_) start_ = now;
@@ -318,18 +318,16 @@ static void add_drive_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<DriveArguments>();
   add_log_level_option(*command);
   command->add_option("NAME", arguments->vehicle, "vehicle to drive");
-  command
-      ->add_option("--kind", arguments->kind,
-                   "what to command; without it the one that fits the devices of the vehicle")
+  command->add_option("--kind", arguments->kind, "what to command; default: what the devices of the vehicle support")
       ->type_name("KIND")
       ->check(one_of({"twist", "tilt", "helm", "thrust", "camera", "joints"}));
   // Controls.
   command->add_option("--profile", arguments->profile, "file with keys, axes, limits and rates")->type_name("FILE");
-  command->add_flag("--print-profile", arguments->print_profile, "print the profile of the program, to be changed");
+  command->add_flag("--print-profile", arguments->print_profile, "print the built-in profile, as a start for your own");
   CLI::Option* gamepad =
       command->add_option("--gamepad", arguments->gamepad, "gamepad instead of keys: /dev/input/eventX")
           ->type_name("DEVICE");
-  command->add_option("--events", arguments->events, "play a file of the events of a gamepad, in their own time")
+  command->add_option("--events", arguments->events, "play a file of gamepad events at their recorded times")
       ->type_name("FILE")
       ->excludes(gamepad);
   // Connection.
@@ -350,8 +348,8 @@ static void add_drive_command(CLI::App& app, int& exit_code) {
         "shoal drive rover1 --profile my_pad.yaml --run results/dive1", "shoal drive rover1 --events lap.events"},
        {{0, "ended by Ctrl-C or the end of the events; the vehicle got its safe command"},
         {1, "the simulator refused; the reason is on stderr"},
-        {2, "wrong usage, an error of the profile, or a vehicle that cannot be driven so"},
-        {4, "bus error, or the gamepad is gone; the vehicle got its safe command"},
+        {2, "wrong usage, an error of the profile, or a vehicle that cannot be driven that way"},
+        {4, "bus error, or the gamepad was disconnected; the vehicle got its safe command"},
         {5, "no simulator answered in time"}},
        {}});
   command->callback([arguments, &exit_code] { exit_code = drive(*arguments); });

@@ -69,7 +69,7 @@ void print_tipping(const sim::VehicleConfig& vehicle) {
     if (std::isinf(tipping)) continue;
     std::cout << "note: vehicle '" << vehicle.vehicle << "': nothing keeps it level: above "
               << sim::number_text(std::round(100 * tipping) / 100)
-              << " m/s ahead the Munk moment of its added mass turns it over (" << vehicle.description << ")\n";
+              << " m/s ahead, the Munk moment of its added mass turns it over (" << vehicle.description << ")\n";
   }
 }
 

@@ -29,8 +29,8 @@ ImageSize parse_image_size(const std::string& text) {
 void add_visibility_option(CLI::App& command, std::string& text) {
   command
       .add_option("--visibility", text,
-                  "distance at which a black target disappears in the water, m: 1 harbour, 10 coast, 60 clearest sea; "
-                  "more is clearer than nature. none: invisible water. Without it 60")
+                  "distance at which a black target disappears in the water, m: 1 harbor, 10 coast, 60 clearest sea; "
+                  "larger values are clearer than any sea. none: invisible water. Default 60")
       ->type_name("M");
 }
 
@@ -62,8 +62,9 @@ viewer::OverlayChoice parse_overlay_option(const std::string& text) {
 
 void add_shapes_option(CLI::App& command, std::string& text) {
   command
-      .add_option("--shapes", text,
-                  "of the bodies: drawn, collision (with the edges of the parts that collide) or wire (only edges)")
+      .add_option(
+          "--shapes", text,
+          "how bodies are drawn: drawn, collision (with the edges of the parts that collide) or wire (only edges)")
       ->type_name("KIND")
       ->check(one_of({"drawn", "collision", "wire"}).description(""))
       ->capture_default_str();

@@ -140,9 +140,9 @@ void add_map_options(CLI::App& command, MapArguments& arguments) {
       ->check(number_from(0, 1e9))
       ->capture_default_str();
   CLI::Option* every =
-      command.add_option("--every", arguments.every_s, "interval of further maps in seconds: NAME_0000.png and so on")
+      command.add_option("--every", arguments.every_s, "interval between maps, s: writes NAME_0000.png and so on")
           ->type_name("S");
-  CLI::Option* until = command.add_option("--until", arguments.until_s, "time of the last of them, s")->type_name("S");
+  CLI::Option* until = command.add_option("--until", arguments.until_s, "time of the last one, s")->type_name("S");
   every->check(number_from(1e-6, 1e9))->needs(until);
   until->check(number_from(0, 1e9))->needs(every);
   command.add_option("--height", arguments.height_m, "height of the horizontal slice, m, such as that of a lidar")
@@ -155,7 +155,7 @@ void add_map_options(CLI::App& command, MapArguments& arguments) {
       ->capture_default_str();
   command
       .add_option("--area", arguments.area,
-                  "smallest x and y, and largest x and y, m; without it all objects at this height")
+                  "smallest x and y, and largest x and y, m; default: all objects at this height")
       ->type_name("X,Y,X,Y");
 }
 

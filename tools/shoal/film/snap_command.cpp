@@ -233,14 +233,15 @@ void add_view_options(CLI::App& command, SnapArguments& arguments) {
   CLI::Option* from =
       command.add_option("--from", arguments.from, "a camera of the world")->type_name("VEHICLE.DEVICE");
   CLI::Option* eye =
-      command.add_option("--eye", arguments.eye, "position of the camera, m; without it all vehicles are in view")
+      command.add_option("--eye", arguments.eye, "position of the camera, m; default: all vehicles are in view")
           ->type_name("X,Y,Z");
-  CLI::Option* all = command.add_flag("--all", arguments.all, "all objects are in view, too, apart from planes");
+  CLI::Option* all = command.add_flag("--all", arguments.all, "all objects are in view too, except planes");
   CLI::Option* look =
       command.add_option("--look", arguments.look, "point that the camera looks at, m")->type_name("X,Y,Z");
   CLI::Option* fov =
       command.add_option("--fov", arguments.fov_deg, "horizontal field of view, degrees")->type_name("DEG");
-  CLI::Option* size = command.add_option("--size", arguments.size, "of the image in pixels")->type_name("WIDTHxHEIGHT");
+  CLI::Option* size =
+      command.add_option("--size", arguments.size, "size of the image, pixels")->type_name("WIDTHxHEIGHT");
   eye->needs(look);
   look->needs(eye);
   fov->check(number_from(1, 170))->capture_default_str();
@@ -249,12 +250,11 @@ void add_view_options(CLI::App& command, SnapArguments& arguments) {
   all->excludes(eye);
   // Kind of image.
   command
-      .add_option(
-          "--image", arguments.image,
-          "rgb, grey, depth, segmentation_parts or segmentation_vehicles; without it rgb, or as --from takes it")
+      .add_option("--image", arguments.image,
+                  "rgb, grey, depth, segmentation_parts or segmentation_vehicles; default rgb, or that of --from")
       ->type_name("KIND")
       ->check(one_of({"rgb", "grey", "depth", "segmentation_parts", "segmentation_vehicles"}).description(""));
-  command.add_option("--antialias", arguments.antialias, "rays along each side of a pixel; without it 2")
+  command.add_option("--antialias", arguments.antialias, "rays along each side of a pixel; default 2")
       ->type_name("N")
       ->check(whole_from(1, 4));
   command.add_option("--quality", arguments.quality, "of a JPEG")
@@ -273,19 +273,17 @@ static void add_snap_command(CLI::App& app, int& exit_code) {
   command->add_option("WORLD", arguments->world, "world file, or the name of a shipped world");
   command
       ->add_option("--log", arguments->log,
-                   "log of shoal run --record instead of a world: its run, with what its programs did")
+                   "log of shoal run --record instead of a world: replays the run with its recorded inputs")
       ->type_name("LOG");
-  command->add_option("--out", arguments->out, "file of the image: .png, .jpg or .jpeg")->type_name("FILE")->required();
+  command->add_option("--out", arguments->out, "image file: .png, .jpg or .jpeg")->type_name("FILE")->required();
   command->add_option("--at", arguments->at_s, "simulated time, s")
       ->type_name("S")
       ->check(number_from(0, 1e9))
       ->capture_default_str();
   CLI::Option* every =
-      command
-          ->add_option("--every", arguments->every_s, "interval of further images in seconds: NAME_0000.png and so on")
+      command->add_option("--every", arguments->every_s, "interval between images, s: writes NAME_0000.png and so on")
           ->type_name("S");
-  CLI::Option* until =
-      command->add_option("--until", arguments->until_s, "time of the last of them, s")->type_name("S");
+  CLI::Option* until = command->add_option("--until", arguments->until_s, "time of the last one, s")->type_name("S");
   every->check(number_from(1e-6, 1e9))->needs(until);
   until->check(number_from(0, 1e9))->needs(every);
   // View and world.

@@ -95,14 +95,17 @@ static void add_bench_command(CLI::App& app, int& exit_code) {
       ->check(one_of(names).description(""))
       ->default_str("land");
   command
-      ->add_option("--vehicles,--robots", arguments->vehicles, "how many; several runs one after the other: 1,10,100")
+      ->add_option("--vehicles,--robots", arguments->vehicles,
+                   "number of vehicles; a list such as 1,10,100 gives one run each")
       ->type_name("N,N,...")
       ->delimiter(',')
       ->type_size(1)
       ->allow_extra_args(false)
       ->check(whole_from(1, 100000).description("each from 1 to 100000"))
       ->default_str("by scene");
-  command->add_option("--threads", arguments->threads, "threads; several runs: 1,2,4; 0: one for each processor")
+  command
+      ->add_option("--threads", arguments->threads,
+                   "number of threads; a list such as 1,2,4 gives one run each; 0: one per processor")
       ->type_name("N,N,...")
       ->delimiter(',')
       ->type_size(1)

@@ -98,21 +98,21 @@ static void add_fidelity_command(CLI::App& app, int& exit_code) {
       ->check(command_line::setting());
   command
       ->add_option("--mutate", arguments->mutation,
-                   "then change each coefficient by this share, and name what no case sees")
+                   "then change each coefficient by this fraction, and list the changes that no case detects")
       ->type_name("SHARE")
       ->check(number_from(1e-4, 0.5));
   command
       ->add_option("--results", arguments->results,
                    "directory for the report: fidelity.md and plots; with --mutate also fidelity_coefficients.md")
       ->type_name("DIR");
-  command->add_flag("--csv", arguments->csv, "with the report, the states of Shoal as CSV files");
+  command->add_flag("--csv", arguments->csv, "with --output, also write the states of Shoal as CSV files");
   add_plugin_option(*command);
   // End of the help and action.
   command_line::set_help_end(*command,
                              {{"shoal fidelity tests/fidelity/cases.yaml --case otter_turn --results results/otter",
                                "shoal fidelity tests/fidelity/cases.yaml --mutate 0.05"},
-                              {{0, "all cases are within their bounds; with --mutate, each change is seen"},
-                               {1, "a bound of a case was missed, or no case sees a change of --mutate"},
+                              {{0, "all cases are within their bounds; with --mutate, each change is detected"},
+                               {1, "a case exceeds a bound, or no case detects a change of --mutate"},
                                {2, "wrong usage, or a mistake in a file"},
                                {4, "file error"}},
                               {"docs/models/fidelity.md says how to add cases."}});

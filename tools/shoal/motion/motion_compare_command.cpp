@@ -157,17 +157,19 @@ int compare(CompareArguments arguments) {
 }  // namespace
 
 void add_motion_compare_command(CLI::App& motion, int& exit_code) {
-  CLI::App* command = motion.add_subcommand("compare", "Compare two motions joint by joint, and where they lead");
+  CLI::App* command =
+      motion.add_subcommand("compare", "Compare two motions joint by joint, and the paths they produce");
   const auto arguments = std::make_shared<CompareArguments>();
   add_log_level_option(*command, "warn");
   command->add_option("FILE", arguments->first, "motion file")->required();
   command->add_option("OTHER", arguments->second, "other motion file; unset: FILE before its last edit or recording");
-  command->add_option("--tolerance", arguments->tolerance_deg, "difference that counts, degrees; usual 0")
+  command->add_option("--tolerance", arguments->tolerance_deg, "tolerated difference, degrees; default 0")
       ->type_name("DEG")
       ->check(number_from(0, 360));
-  command->add_option("--world", arguments->stage.world, "play both in this world, and compare the way of the vehicle")
+  command
+      ->add_option("--world", arguments->stage.world, "play both in this world, and compare the paths of the vehicle")
       ->type_name("WORLD");
-  command->add_option("--vehicle", arguments->stage.vehicle, "its name; needed when several have a motion_player")
+  command->add_option("--vehicle", arguments->stage.vehicle, "its name; required if several have a motion_player")
       ->type_name("NAME");
   command->add_option("--png", arguments->png, "plot of the joints that differ, by gnuplot")->type_name("FILE");
   add_set_option(*command, arguments->stage.load.sets);

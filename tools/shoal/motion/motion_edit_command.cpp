@@ -188,18 +188,18 @@ void add_cuts(EditCommands& commands) {
 
 void add_joining(EditCommands& commands) {
   const auto append = commands.add(
-      "append", "Add another motion behind it", "sit.yaml wave.yaml --gap 0.5",
+      "append", "Append another motion", "sit.yaml wave.yaml --gap 0.5",
       [](const auto& a, const auto& motion) { return motion::appended(motion, motion_of(a.other), a.by); });
   append.arguments.by = 0.5;
   append.command.add_option("OTHER", append.arguments.other, "motion file that is added")->required();
-  append.command.add_option("--gap", append.arguments.by, "time between both, s; usual 0.5")
+  append.command.add_option("--gap", append.arguments.by, "pause between the two, s; default 0.5")
       ->type_name("S")
       ->check(time_s);
   const auto merge = commands.add(
       "merge", "Add the joints of another motion", "legs.yaml head.yaml",
       [](const auto& a, const auto& motion) { return motion::merged(motion, motion_of(a.other), a.replace); });
   merge.command.add_option("OTHER", merge.arguments.other, "motion file whose joints are added")->required();
-  merge.command.add_flag("--replace", merge.arguments.replace, "joints of both are those of OTHER");
+  merge.command.add_flag("--replace", merge.arguments.replace, "take the joints that both have from OTHER");
 }
 
 void add_mirrors(EditCommands& commands) {
@@ -221,7 +221,7 @@ void add_times(EditCommands& commands) {
       ->required();
   command_line::add_name_list(shift.command, "--joints", shift.arguments.joints, "joints; unset: all")
       ->type_name("JOINT,...");
-  const auto scale = commands.add("scale", "Make it slower or faster", "wave.yaml --by 2",
+  const auto scale = commands.add("scale", "Make a motion slower or faster", "wave.yaml --by 2",
                                   [](const auto& a, const auto& motion) { return motion::stretched(motion, a.by); });
   scale.command.add_option("--by", scale.arguments.by, "factor of all times; 2: half as fast")
       ->type_name("FACTOR")
@@ -251,7 +251,7 @@ void add_values(EditCommands& commands) {
       commands.add("simplify", "Leave out keys", "recorded.yaml --tolerance 0.25",
                    [](const auto& a, const auto& motion) { return motion::simplified(motion, a.by * rad_per_deg); });
   simplify.arguments.by = 0.25;
-  simplify.command.add_option("--tolerance", simplify.arguments.by, "greatest change of a value, deg; usual 0.25")
+  simplify.command.add_option("--tolerance", simplify.arguments.by, "largest change of a value, deg; default 0.25")
       ->type_name("DEG")
       ->check(number_from(0, 360));
   const auto set = commands.add("set", "Set values of joints", "wave.yaml --at 0.5 lf_knee=40 rf_knee=40",

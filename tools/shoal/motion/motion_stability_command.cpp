@@ -189,26 +189,28 @@ void add_motion_stability_command(CLI::App& motion, int& exit_code) {
   command->add_option("--every", arguments->every_s, "time between two rows, s; unset: a row for each key")
       ->type_name("S")
       ->check(number_from(0.001, 3600));
-  command->add_option("--directions", arguments->push.directions, "of the pushes; usual 8")
+  command->add_option("--directions", arguments->push.directions, "number of push directions; default 8")
       ->type_name("N")
       ->check(whole_from(1, 64));
-  command->add_option("--watch", arguments->push.watch_s, "time after a push in which it may fall, s; usual 2")
+  command->add_option("--watch", arguments->push.watch_s, "time after a push in which it may fall, s; default 2")
       ->type_name("S")
       ->check(number_from(0.01, 60));
-  command->add_option("--greatest", arguments->push.greatest_mps, "greatest impulse over the mass, m/s; usual 6")
+  command->add_option("--greatest", arguments->push.greatest_mps, "largest impulse per mass, m/s; default 6")
       ->type_name("MPS")
       ->check(number_from(0.02, 100));
   command
       ->add_option("--stable", arguments->stable_mps,
-                   "impulse over the mass that a stable motion withstands everywhere, m/s; usual 0.4")
+                   "impulse per mass that a stable motion withstands everywhere, m/s; default 0.4")
       ->type_name("MPS")
       ->check(number_from(0.02, 100));
   command
       ->add_option("--marginal", arguments->marginal_mps,
-                   "the same of a marginal one; below it is unstable, m/s; usual 0.1")
+                   "the same for a marginal motion; below it a motion is unstable, m/s; default 0.1")
       ->type_name("MPS")
       ->check(number_from(0.02, 100));
-  command->add_option("--threads", arguments->push.threads, "0: one for each processor; the results are the same")
+  command
+      ->add_option("--threads", arguments->push.threads,
+                   "number of threads; 0: one per processor; does not change the results")
       ->type_name("N")
       ->check(whole_from(0, 256));
   add_set_option(*command, arguments->stage.load.sets);
@@ -218,12 +220,15 @@ void add_motion_stability_command(CLI::App& motion, int& exit_code) {
       {{"shoal motion stability vehicles/motions/ers7/wave.yaml --world ers7_studio",
         "shoal motion stability vehicles/motions/ers7/*.yaml --world ers7_studio",
         "shoal motion stability walk.yaml --world ers7_studio --every 0.1 --directions 4 --watch 1"},
-       {{0, "it stands"}, {1, "one falls by itself"}, {2, "wrong usage or configuration; one cannot be played"}},
-       {"Copies of the world are pushed at each row, and the motion continues: it has fallen when it tilts by "
+       {{0, "it stands"},
+        {1, "a vehicle falls without a push"},
+        {2, "wrong usage or configuration; one cannot be played"}},
+       {"The vehicle is pushed in copies of the world at each row, and the motion continues: it has fallen when it "
+        "tilts by "
         "more than 45 degrees or its first body touches the ground.",
         "Class: stable, marginal or unstable, by the weakest push that makes it fall at any row in any direction.  "
         "Lines of several motions have rows that are half a second or more apart, and pushes up to three times "
-        "--stable.  The usual thresholds are meant for the ERS-7: docs/guides/motions.md gives the reasons."}});
+        "--stable.  The default thresholds are meant for the ERS-7: docs/guides/motions.md gives the reasons."}});
   command->callback([arguments, &exit_code] { exit_code = stability(*arguments); });
 }
 

@@ -21,7 +21,7 @@ int pack(const experiment::BugOptions& options) {
     for (const std::string& line : report.inside) std::cout << "  " << line << '\n';
     if (!report.left_out.empty()) std::cout << "left out:\n";
     for (const std::string& line : report.left_out) std::cout << "  " << line << '\n';
-    std::cerr << "Paths and commands of this machine are in it: look into it before you send it.\n";
+    std::cerr << "It contains paths and commands of this machine: review it before you send it.\n";
   } catch (const std::runtime_error& error) {
     std::cerr << "shoal: " << error.what() << '\n';
     return exit_bus;

@@ -99,7 +99,7 @@ static void add_replay_command(CLI::App& app, int& exit_code) {
   command->add_option("--world", arguments->replay.world, "a world file instead of the log's world")->type_name("FILE");
   add_set_option(*command, arguments->replay.load.sets);
   add_allow_path_option(*command, arguments->replay.load);
-  command->add_option("--until", arguments->replay.until_s, "simulated seconds; without it to the end of the log")
+  command->add_option("--until", arguments->replay.until_s, "simulated seconds; default: to the end of the log")
       ->type_name("S")
       ->check(number_from(0, 1e9));
   command->add_option("--report", arguments->report, "file for all differences")->type_name("FILE");

@@ -101,7 +101,7 @@ static void add_tune_command(CLI::App& app, int& exit_code) {
   command->add_option("--figure", options.figure, "figure of the runs, such as cooperative.rms_m")
       ->type_name("METRIC.FIGURE")
       ->required();
-  command->add_option("--goal", arguments->goal, "which value of it is best")
+  command->add_option("--goal", arguments->goal, "whether the smallest or largest value is best")
       ->type_name("GOAL")
       ->check(one_of({"min", "max"}));
   command->add_option("--over", options.statistic, "statistic over the cases and seeds of a point")
@@ -120,12 +120,12 @@ static void add_tune_command(CLI::App& app, int& exit_code) {
   command->add_option("--search-seed", options.seed, "seed of the search")
       ->type_name("N")
       ->check(whole_from(0, 9007199254740992));
-  command->add_option("--seeds", arguments->seeds, "of the runs, instead of those of the study")->type_name("SEEDS");
+  command->add_option("--seeds", arguments->seeds, "seeds of the runs, instead of those of the study")
+      ->type_name("SEEDS");
   command->add_option("--duration", arguments->changes.duration_s, "simulated seconds of each run")
       ->type_name("S")
       ->check(number_from(1e-6, 1e9));
-  command->add_option("--output", options.study.output, "output folder; without it results/STUDY_tune")
-      ->type_name("DIR");
+  command->add_option("--output", options.study.output, "output folder; default results/STUDY_tune")->type_name("DIR");
   add_jobs_options(*command, options.study);
   add_allow_path_option(*command, arguments->changes.load);
   add_plugin_option(*command);
@@ -133,7 +133,7 @@ static void add_tune_command(CLI::App& app, int& exit_code) {
       *command,
       {{"shoal tune balance_gains.yaml --figure balance.pitch_std_deg --generations 10 --jobs 2"},
        {{0, "a best point was found"},
-        {1, "rules of the world do not hold at the best point"},
+        {1, "rules of the world fail at the best point"},
         {2, "wrong usage, or a mistake in the study or its world"},
         {4, "no point has a value, or a file error"},
         {130, "ended by Ctrl-C"}},
