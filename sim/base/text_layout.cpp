@@ -89,6 +89,8 @@ std::string wrapped(std::string_view text, std::size_t columns, std::size_t inde
 std::string two_columns(const std::vector<std::pair<std::string, std::string>>& rows, std::size_t columns,
                         std::size_t max_name_columns) {
   constexpr std::size_t margin = 2;
+  // Only names that fit set the column: one long option would push all meanings to the right. Its own meaning begins
+  // on the next line instead.
   std::size_t width = 0;
   for (const auto& [name, meaning] : rows)
     if (column_count(name) <= max_name_columns) width = std::max(width, column_count(name));

@@ -54,6 +54,7 @@ void OpticsConfig::read(ParamReader& in) {
   in.read_deg("max_angle_deg", max_angle_rad, above_to(0, 180), "fisheye: pixels farther off the axis are black");
   if (in.describing()) return;
   if (in.has("fov_deg") && in.has("focal_px")) in.error("focal_px", "needs either 'fov_deg' or 'focal_px', not both");
+  // problem() knows values, not keys; the key that it quotes decides at which line of the file the error is reported.
   const std::string wrong = problem();
   if (wrong.empty()) return;
   for (const char* key : {"distortion", "principal_px", "focal_px", "fov_deg", "width"})

@@ -554,6 +554,7 @@ bool ParamReader::read_items(const char* key, const ConfigNode& node, const char
     error_at(node.place, quoted_name(key) + " must be a list of maps, got " + shown(node));
     return false;
   }
+  // All wrong items are reported in one go, not only the first.
   for (std::size_t i = 0; i < node.items.size(); ++i) {
     const ConfigNode& item = node.items[i];
     if (item.kind != Kind::map) {

@@ -146,6 +146,8 @@ void Hydrodynamics::list_groups() {
 
 void Hydrodynamics::step_by_groups(double gravity_mps2, const Actors& actors, ThreadPool* threads) {
   if (!groups_listed_) list_groups();
+  // Threads only collect warnings and failures here. They are reported afterwards, so that neither depends on the
+  // number of threads.
   LateWarnings at_begin, late;
   FirstFailure failure;
   const double highest_m = medium_.highest_surface_m();

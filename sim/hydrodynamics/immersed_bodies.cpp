@@ -126,6 +126,8 @@ void ImmersedBodies::step_body(const ImmersedBody& body, double gravity_mps2, co
                                ImmersedDrag& drag) const {
   const LocalWater& at_origin = around.water;
   const BodyMotion& motion = around.motion;
+  // Nothing of the body is below the highest possible crest. This test spares a world with water most of its dry
+  // bodies.
   if (motion.p_WB.z() - body.radius_m > medium_.highest_surface_m()) return;
   Wrench sum;
   sum.R_WB = motion.R_WB;
@@ -139,6 +141,8 @@ void ImmersedBodies::step_body(const ImmersedBody& body, double gravity_mps2, co
   if (!sum.wet) return;
   add_wind(body, drag, sum);
   if (body.stiff && sum.afloat) add_stiffness(body, at_origin, sum);
+  // The drag is too stiff for the midpoint, where `around` was taken. Backward Euler is stable at any stiffness, but
+  // starts from the motion at the start of the step, so everything is computed once more.
   if (!apply(*body.body, gravity_mps2, drag, sum)) {
     body.body->take_first_order_step(step_s_);
     BodyInWater at_start = around;

@@ -88,6 +88,7 @@ ImmersedPiece mesh_piece(Mesh mesh, const Vector3d& C) {
 std::shared_ptr<const Mesh> closed_mesh(const PartConfig& part, const std::string& who, PieceMeshes& meshes,
                                         std::optional<std::string>& warning) {
   const std::string path = (std::filesystem::path(part.directory) / part.mesh).string();
+  // Instances of a vehicle share one mesh. An open one is remembered as a null pointer, so that it is not read again.
   const auto [at, added] = meshes.try_emplace({path, part.scale});
   if (added) {
     try {

@@ -215,6 +215,7 @@ class CtdReader {
   void read_row(int number, const std::vector<std::string_view>& cells) {
     CtdLine line;
     line.number = number;
+    // A row with a missing value is left out as a whole; the profile is interpolated over it.
     for (std::size_t i = 0; i < ctd_columns; ++i) {
       if (!columns_[i]) continue;
       const std::string name = "'" + std::string(ctd_names[i]) + "'";
@@ -232,6 +233,8 @@ class CtdReader {
                              number_text(ctd_limits[i].max) + "]" + got);
       if (!ctd_usual[i].has(value)) unusual_[i].add(number, name, cell);
     }
+    // Casts list pressure or depth; the model needs depth. Rows in the air (negative depth), taken before the probe
+    // is lowered, are dropped.
     if (!columns_[depth]) line.values[depth] = depth_of_pressure_m(line.values[pressure]);
     if (line.depth_m() >= 0) lines_.push_back(line);
   }

@@ -121,6 +121,8 @@ CurrentGrid::CurrentGrid(const CurrentConfig& config) : edge_(config.outside == 
       path = (folder / config.east_file).string();
       read_esri(path, (folder / config.north_file).string());
     }
+    // Codes for missing values (9999, -99.9) pass as numbers; a current of that speed would carry vehicles away
+    // without an error.
     for (const auto& v : velocities_mps_)
       if (const double speed = v.cwiseAbs().maxCoeff(); speed > fastest_mps)
         throw TerrainError("has a current of " + number_text(speed) + " m/s, more than 100");
@@ -172,6 +174,7 @@ void CurrentGrid::read_esri(const std::string& east_path, const std::string& nor
     }
   };
   const HeightGrid east = read(east_path), north = read(north_path);
+  // The velocity at a point is read from two files, so both must have the same points.
   if (east.columns != north.columns || east.rows != north.rows || east.cell_m != north.cell_m ||
       east.west_m != north.west_m || east.south_m != north.south_m)
     throw TerrainError("file '" + north_path + "' must have the points of '" + east_path + "'");

@@ -34,6 +34,7 @@ void ObjectConfig::read(ParamReader& in) {
   read_mechanism(in);
   if (in.describing()) return;
   check_keys(in);
+  // An error in `bodies` may leave none; what follows expects the first body.
   if (bodies.empty()) bodies.resize(1);
   if (in.has("bodies")) return;
   bodies.front().name = "body";

@@ -170,6 +170,7 @@ void JointAxisConfig::read(ParamReader& in) {
   in.read("axis", axis, any_number(), "direction in the frame of the vehicle or object, of any length");
   if (axis.norm() < 1e-9) {
     in.error("axis", "'axis' must not be zero");
+    // The axis is normalized later, so after the error any valid direction will do.
     axis = Vector3d::UnitZ();
   }
   in.read("low_stop", low_stop, any_number(), "lowest angle in rad, or position of a slider in m");

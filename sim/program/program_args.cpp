@@ -191,6 +191,8 @@ void append_words(const ArgDeclaration& arg, const ConfigNode& value, const std:
       break;
   }
   if (diagnostics.lines().size() != errors) return;
+  // `--name=value` in one word: a negative number or a text that begins with '-' as a word of its own would be taken
+  // for an option.
   std::string word = option_of(arg.name) + "=" + text;
   if (word.size() > max_word)
     return diagnostics.error(value.place, who,

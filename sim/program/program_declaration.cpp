@@ -213,6 +213,8 @@ void ProgramDeclaration::read(ParamReader& in) {
   in.require("program");
   in.read("program", program, "file name of the program; the declaration is NAME.args.yaml");
   in.read("meaning", meaning, "description in one sentence");
+  // An absent list means that the channels are unknown, an empty one that there are none: only the latter can be
+  // checked.
   const auto read_channels = [&in](const char* key, std::optional<std::vector<std::string>>& channels, const char* of) {
     std::vector<std::string> list;
     in.read(key, list, of);

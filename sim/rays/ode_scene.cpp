@@ -128,6 +128,7 @@ void OdeScene::place_triangles(Part& part) {
 }
 
 void OdeScene::refresh(Layer& layer, std::uint64_t moves) const {
+  // The boxes are computed once per change of poses, by the first ray that needs them.
   if (layer.seen == moves) return;
   layer.seen = moves;
   if (&layer == &layers_[0] && moves_.bring_parts) moves_.bring_parts();

@@ -113,6 +113,7 @@ SHOAL_INLINE double range_to(const RayShape& shape, const RayPacket& rays, int l
     const double height = shape.axes[6] * (rays.origin[0][lane] - shape.center[0]) +
                           shape.axes[7] * (rays.origin[1][lane] - shape.center[1]) +
                           shape.axes[8] * (rays.origin[2][lane] - shape.center[2]);
+    // A ray parallel to the plane divides by 0. The infinity or NaN fails the comparison and counts as no hit.
     const double rate = shape.axes[6] * rays.direction[0][lane] + shape.axes[7] * rays.direction[1][lane] +
                         shape.axes[8] * rays.direction[2][lane];
     const double range = -height / rate;
@@ -324,6 +325,7 @@ RayShape make_ray_shape(int number, const ScenePart& part, const TriangleScene* 
 }
 
 void follow(RayShape& shape, dGeomID geom) {
+  // ODE stores a plane as n x = d in the world frame, without a position.
   if (shape.kind == Kind::plane) {
     dVector4 plane;
     dGeomPlaneGetParams(geom, plane);
@@ -340,6 +342,7 @@ void follow(RayShape& shape, dGeomID geom) {
   for (int axis = 0; axis < 3; ++axis)
     for (int i = 0; i < 3; ++i) shape.axes[3 * axis + i] = R[4 * i + axis];
   if (shape.kind != Kind::mesh) return;
+  // The shape is centered on the bounding box of the mesh, not on its origin, for the box test before the triangles.
   const Vector3d c = shape.mesh->center_m();
   for (int i = 0; i < 3; ++i)
     shape.center[i] += shape.axes[i] * c.x() + shape.axes[3 + i] * c.y() + shape.axes[6 + i] * c.z();

@@ -72,6 +72,8 @@ MountedDevice::MountedDevice(Vehicle& vehicle, const DeviceConfig& config, Devic
       X_BS_(config.X_BS()),
       host_(host),
       full_name_(vehicle.name() + "/" + config.name),
+      // Two streams: drawing the loss and delay of messages must not change the noise, so that a run with another
+      // link keeps its errors.
       noise_random_(host.seed, full_name_),
       link_random_(host.seed, full_name_ + "#link"),
       number_(number),

@@ -123,6 +123,8 @@ void StepSchedule::plan_again(const MountedDevice& device) {
 void StepSchedule::take_messages(const StepClock& clock) {
   taking_.clear();
   std::size_t alone = 0;
+  // Devices mark arrivals in a flag, and the cheap load comes first: most of thousands of devices have no message in
+  // a step.
   for (const Listening& listening : listening_) {
     if (!listening.messages->load(std::memory_order_relaxed) ||
         !listening.messages->exchange(false, std::memory_order_acquire))
@@ -135,6 +137,8 @@ void StepSchedule::take_messages(const StepClock& clock) {
       if (taking_[i].alone) taking_[i].device->take_messages(clock.now(), clock.step_number, &taking_[i].bad);
   };
   const bool shared = alone >= min_shared;
+  // Below some number of devices starting the threads costs more than it saves. Warnings of threads are kept in `bad`
+  // and given in the order of the devices.
   if (shared) for_each_block(threads_.get(), taking_.size(), take_alone);
   for (const Taking& taking : taking_)
     if (shared && taking.alone)

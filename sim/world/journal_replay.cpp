@@ -62,6 +62,8 @@ void check_pose(const Pose& X_W) {
 }  // namespace
 
 void JournalReplay::apply(const Entry& entry) {
+  // Each change is made at its own step: what is added looks at the time, and the water of that time, as it did in
+  // the run.
   parts_.clock.step_number = entry.step;
   parts_.medium.advance_to(parts_.clock.now());
   check_pose(entry.X_W);

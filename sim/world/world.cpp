@@ -30,6 +30,8 @@ World::World(const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinde
       journal_(std::make_unique<WorldJournal>(*parts_)),
       editor_(std::make_unique<WorldEditor>(*this, *parts_, *builder_, *journal_)),
       state_(std::make_unique<WorldState>(*parts_, *builder_, *editor_, *journal_)) {
+  // Checks of the start come after build(): they need the bodies at their places, the water and the bottom below
+  // them.
   builder_->build();
   parts_->script = std::make_unique<Script>(*editor_);
   Warnings& warnings = parts_->warnings.building();

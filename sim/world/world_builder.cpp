@@ -217,6 +217,7 @@ bool WorldBuilder::change_device(const std::string& full_name, const ConfigNode&
     diagnostics.error(values.place, who, error.what());
     return false;
   }
+  // The new keys may change the rate, and so the next sample, and what the device contributes to the step hash.
   parts_.schedule.plan_again(*device);
   parts_.step_hash.forget_devices();
   return true;

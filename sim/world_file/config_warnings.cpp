@@ -198,6 +198,8 @@ class ConfigCheck {
   }
 
   void check_joint(const JointConfig& joint, const ConfigNode& source, const std::string& who) const {
+    // Keys without effect are often the sign of a wrong `type`: the joint is valid, but moves otherwise than its
+    // author thinks.
     const bool fixed = joint.type == JointType::fixed, ball = joint.type == JointType::ball;
     const std::string type = std::string(word_of(joint_type_words, joint.type)) + (fixed ? " joint" : "");
     const auto warn_of = [&](const ConfigNode* axis, std::initializer_list<const char*> keys,

@@ -226,6 +226,7 @@ class RuleParser {
   void read_function(const std::string& function) {
     const std::size_t begin = at_;
     at_ += function.size();
+    // Errors point at the character of the rule that is wrong, so positions are kept before anything is skipped.
     skip_blanks();
     const std::size_t open = at_;
     if (const std::string problem = names_.function_problem(function); !problem.empty()) fail(begin, problem);

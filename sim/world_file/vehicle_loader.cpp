@@ -250,6 +250,7 @@ Parameters VehicleLoader::parameters_of(const VehicleEntry& entry, const ConfigN
       continue;
     }
     known->second = given.value;
+    // A value given in the world may contain `${index}`, so that one entry with a count gives each vehicle its own.
     substitute_parameters(known->second, {parameters[0]}, who, diagnostics_);
   }
   return parameters;

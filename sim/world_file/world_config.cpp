@@ -54,6 +54,7 @@ void VehicleEntry::read(ParamReader& in) {
   in.read_reference("bus", bus, "bus", "separate bus, named in `buses`; unset: the world's");
   in.read_raw("overrides", overrides,
               "dotted path: value, such as devices.lidar.rate_hz: 5; NAME3/devices.lidar.rate_hz: one of a count");
+  // Both at once would leave open which of them is meant.
   if (!in.describing() && in.has("file") == in.has("model"))
     in.error(in.has("file") ? "needs either 'file' or 'model', not both" : "needs either 'file' or 'model'");
 }
