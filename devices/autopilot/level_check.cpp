@@ -36,6 +36,8 @@ double top_mps(AutopilotActuators& actuators, const sim::CoefficientModel& model
 void check_level(AutopilotActuators& actuators, const HoldGains& attitude, const sim::DeviceContext& context) {
   const sim::HydrodynamicsConfig* water = hydrodynamics_of(context);
   const CraftAbilities craft = actuators.abilities();
+  // The waterline holds a surface craft upright, and fins in the flow a slender hull. Only hulls under thrusters
+  // alone can be turned over by the Munk moment.
   if (water == nullptr || water->waterline || craft.fins) return;
   const sim::CoefficientModel model(*water, context.world.config().physics.gravity_mps2);
   double needed_radps = 0;
@@ -44,6 +46,7 @@ void check_level(AutopilotActuators& actuators, const HoldGains& attitude, const
   for (const LevelMotion motion : {LevelMotion::ahead, LevelMotion::sideways}) {
     const int axis = motion == LevelMotion::ahead ? 4 : 3;
     if (motion == LevelMotion::sideways && !craft.sideways) continue;
+    // The attitude loop acts as a stiffness of inertia times bandwidth squared, which adds to the righting moment.
     const double inertia = craft.mass[axis], w = actuators.gives(axis) ? attitude.bandwidth_radps : 0;
     const double tipping = sim::tipping_mps(model, motion, inertia * w * w);
     if (std::isinf(tipping)) continue;

@@ -56,6 +56,7 @@ Gateway::Gateway(const Params& params, const sim::DeviceContext& context)
       continue;
     fail("'between' names no modem or acoustic_modem '" + name + "'");
   }
+  // A modem of two gateways would forward every message twice.
   for (const sim::DeviceConfig& other : context.vehicle.config().devices) {
     if (other.type != "gateway" || other.name == context.config.name) continue;
     const auto& names = static_cast<const sim::detail::ParamsOf<Params>&>(*other.params).params.between;

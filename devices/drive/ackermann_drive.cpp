@@ -85,6 +85,8 @@ void AckermannDrive::take_lengths(const sim::DeviceContext& context) {
                as_it_is);
   check_length(context, {"wheel_radius_m", params_.wheel_radius_m, radius_m}, {},
                "it drives {} times as fast as commanded", inverse);
+  // A length that is configured differently from the joints is legal: it makes the errors of a badly
+  // calibrated drive. The warning says how large they are.
   of_joints_ = {wheelbase_m.value_or(of_joints_.wheelbase_m), track_m.value_or(of_joints_.track_m),
                 radius_m.value_or(of_joints_.wheel_radius_m)};
   lengths_ = lengths_of(params_);

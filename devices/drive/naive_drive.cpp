@@ -54,6 +54,7 @@ NaiveDrive::NaiveDrive(const Params& params, const sim::DeviceContext& context)
   const auto body_of = [&](const sim::DeviceConfig& device) {
     return device.body.empty() ? bodies.front().name : device.body;
   };
+  // Two drives of one body would set its pose alternately.
   for (const sim::DeviceConfig& device : context.vehicle.config().devices)
     if (device.type == "naive_drive" && device.name != context.config.name &&
         body_of(device) == body_of(context.config))

@@ -120,6 +120,7 @@ JointDrive::Axis JointDrive::with(Axis axis, const Settings& settings) const {
     throw std::runtime_error("'velocity' and 'max_force' must not be infinite");
   if (settings.max_force < 0)
     throw std::runtime_error("'max_force' must be >= 0, got " + sim::number_text(settings.max_force));
+  // NaN in a command means 'as before', the convention of all commands with several numbers.
   const auto take = [](double& value, double given) {
     if (!std::isnan(given)) value = given;
   };

@@ -39,6 +39,7 @@ void Fin::Params::read(sim::ParamReader& in) {
     in.error("'coefficients' is missing: 'model' coefficients needs it");
   if (model != Model::coefficients && coefficients)
     in.error("coefficients", "'coefficients' belongs to 'model' coefficients, and only to it");
+  // All zeros would be a fin without effect, most likely a forgotten table.
   if (coefficients && coefficients->force.isZero(0) && coefficients->moment.isZero(0))
     in.error("coefficients", "'coefficients' must have a force or a moment that is not 0");
 }

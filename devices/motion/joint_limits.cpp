@@ -50,6 +50,7 @@ JointLimitTable::JointLimitTable(const std::vector<JointLimitRow>& rows,
       desired.while_from = row.when->from_rad;
       desired.while_to = row.when->to_rad;
     }
+    // Rows of the same joints and condition form one table, a step function of the position of `by`.
     const auto same = [&](const Table& one) {
       return one.joint == desired.joint && one.by == desired.by && one.while_joint == desired.while_joint &&
              one.while_from == desired.while_from && one.while_to == desired.while_to;

@@ -97,6 +97,8 @@ std::vector<MotionPlayer::Tracks> MotionPlayer::tracks_of(const Params& params) 
     Tracks& tracks = motions.emplace_back();
     tracks.name = motion.name;
     tracks.frame_s = motion.frame_s;
+    // Set points go out at whole frames, so the motion lasts a whole number of them; the rounding constant keeps one
+    // that ends at a frame from getting one more.
     tracks.duration_s = std::ceil(motion.end_s() / motion.frame_s - frame_rounding) * motion.frame_s;
     tracks.loop = motion.loop;
     tracks.start = motion.start;
@@ -367,6 +369,7 @@ void MotionPlayerController::receive(sim::Time, std::span<const std::byte> paylo
   const auto message = shoal::decode<shoal::motion_command_t>(payload, shoal::Finite::any);
   for (const double value : {message.from_s, message.to_s, message.rate})
     if (std::isinf(value)) throw std::runtime_error("'from_s', 'to_s' and 'rate' must be finite, or NaN");
+  // NaN stands for a number that the sender leaves to the motion.
   const auto given = [](double value) { return std::isnan(value) ? std::nullopt : std::optional(value); };
   switch (message.command) {
     case 0:

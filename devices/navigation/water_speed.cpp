@@ -40,6 +40,7 @@ void WaterSpeed::measure(const sim::SenseContext& context) {
       speed_mps_ = std::abs(speed_mps_);
       break;
   }
+  // The threshold is applied after the kind of sensor: a paddle wheel sticks in slow flow from either side.
   if (std::abs(speed_mps_) < params_.threshold_mps) speed_mps_ = 0;
   speed_mps_ = std::clamp(speed_mps_, -params_.speed_max_mps, params_.speed_max_mps);
 }

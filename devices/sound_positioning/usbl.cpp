@@ -86,9 +86,11 @@ void Usbl::measure(const sim::SenseContext& context) {
                       elevation_rad(answer.p_ST_S), azimuth_rad(answer.apparent_S), elevation_rad(answer.apparent_S),
                       params_.array ? params_.array->cosine_std(tone) : 0});
   }
+  // The device converts times by the sound speed that it assumes, by default the true one at its transducer.
   assumed_mps_ = params_.assumed_sound_speed_mps.value_or(medium.sound_speed_mps(p_WS));
   R_WS_ = context.X_WS.linear();
   depth_m_ = medium.depth_m(p_WS);
+  // The next ping waits for all answers: those of two pings could not be told apart.
   if (context.now < next_ping_ || !interrogator_.done(context.now) || !medium.in_water(p_WS)) return;
   next_ping_ = context.now + sim::from_seconds(params_.ping_period_s);
   interrogator_.ping(context.now);
