@@ -218,6 +218,8 @@ Finding check_port(const LcmEndpoint& endpoint) {
   }
   finding.text += "; they and this simulator receive each other's messages";
   const auto groups = other_groups(endpoint.address);
+  // liblcm 1.3 binds the port, not the group, so the kernel delivers all groups that any program on this machine has
+  // joined.
   if (groups.empty()) return finding;
   finding.verdict = Verdict::warning;
   separator = ", and there are other multicast groups (";

@@ -322,6 +322,7 @@ std::optional<std::string> SimService::execute(Link& link, const shoal::sim_cont
                                                TimeMachine* machine) {
   const std::string& command = request.command;
   const int number = number_of(link);
+  // The time machine goes first: pause, step, rewind and the like act on the run, everything else on the world.
   if (machine != nullptr)
     if (auto text = machine->execute(command, request.text, request.value)) return text;
   if (command == "quit") {

@@ -50,8 +50,10 @@ void Session::receive_text(std::string_view bytes) {
     parameters_.insert(message.names.begin(), message.names.end());
   } else if (message.op == "unsubscribeParameterUpdates" && may(Control::run)) {
     for (const std::string& name : message.names) parameters_.erase(name);
+    // An empty list unsubscribes from all parameters.
     gets_parameters_ = !parameters_.empty() && !message.names.empty();
   } else if (message.op.find("Parameter") != std::string::npos) {
+    // The operation is known, but this connection may not use it.
     report(StatusLevel::error, message.op + ": " + std::string(control_is_off));
   } else {
     report(StatusLevel::warning, "'" + message.op + "' is not supported");

@@ -106,6 +106,8 @@ void LockstepClient::request(const std::string& command, double value, const std
   if (command == "join") join_id_ = id;
   answered_id_.reset();
   milliseconds interval = first_resend_interval;
+  // UDP loses messages, so the request is repeated, less and less often, with the same id: a late answer to an
+  // earlier copy still counts.
   while (Clock::now() < deadline && !(stop_ && heed_stop)) {
     send_request(command, id, value, text);
     const auto resend = std::min(deadline, Clock::now() + interval);
@@ -223,11 +225,13 @@ void LockstepClient::request_end_notification() {
 
 bool LockstepClient::handle_message() {
   const bool forever = silence_limit_.count() == 0;
+  // Clock::now() + limit would overflow for 'forever'.
   const auto deadline = forever ? Clock::time_point::max() : Clock::now() + silence_limit_;
   while (true) {
     auto until = deadline;
     if (following_) {
       request_end_notification();
+      // The request to be told of the end may be lost on UDP; it is repeated until answered.
       if (requests_left_ > 0 && answered_id_ != join_id_) until = std::min(until, ask_at_);
     }
     const auto message = wait(until);

@@ -148,6 +148,7 @@ bool EventLogWriter::write(std::int64_t number, std::int64_t utime, std::string_
     if (bytes > 0) std::memcpy(to, from, bytes);
     to += bytes;
   };
+  // Numbers of an event are big-endian, as in liblcm's eventlog.c.
   const auto put32 = [&put](std::size_t value) {
     const std::uint32_t ordered = htobe32(static_cast<std::uint32_t>(value));
     put(&ordered, sizeof ordered);

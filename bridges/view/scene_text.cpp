@@ -108,6 +108,7 @@ Json SceneWriter::part(const sim::PartConfig& part, const std::string& owner) {
   }
   json["pose"] = pose_json(sim::make_pose(part.position_m, part.rpy_rad));
   if (!part.color.empty()) json["color"] = part.color;
+  // The view of collision shapes leaves out parts that can touch nothing.
   if (!collisions_.has(part, owner)) json["collides"] = false;
   const auto material = material_numbers_.find(part.material);
   json["material"] = material == material_numbers_.end() ? 0 : material->second;
@@ -180,6 +181,8 @@ Json SceneWriter::vehicles() const {
     }
     all.push_back({{"name", vehicle->name()},
                    {"body", vehicle->base().number()},
+                   // The page places the name and the track of a vehicle at its frame V, but only poses of bodies are
+                   // published.
                    {"pose", pose_json(vehicle->base().X_WB().inverse() * vehicle->X_WV())},
                    {"own_clock", !vehicle->clock().perfect()},
                    {"devices", std::move(devices)}});

@@ -195,6 +195,8 @@ void ViewPublisher::publish_stamped_scene() {
   std::size_t bytes = scene_.scene.size();
   for (const auto& [hash, content] : assets_.all()) {
     bytes += content.size();
+    // Assets are named by the hash of their content, so an unchanged mesh is sent once, however often the scene
+    // changes.
     if (!published_assets_.insert(hash).second) continue;
     shoal::sim_asset_t asset{};
     asset.utime = scene_.utime;
@@ -205,6 +207,8 @@ void ViewPublisher::publish_stamped_scene() {
     publish("sim.asset", asset);
   }
   repeated_ = world_.now();
+  // A viewer that joins late gets the scene by repetition. The interval grows with the size, so that large meshes
+  // take a bounded data rate.
   repeat_after_ = std::max(repeat_interval, sim::from_seconds(static_cast<double>(bytes) / repeated_bytes_per_s));
 }
 
