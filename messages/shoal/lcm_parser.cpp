@@ -190,6 +190,7 @@ class Parser {
     }
     advance();
     if (token_.text == ";") advance();
+    // On the wire an enum of LCM is a struct with one int32.
     Member value;
     value.name = "value";
     value.type_name = "int32_t";

@@ -143,6 +143,7 @@ class Writer {
     const std::int64_t size =
         dimension.is_variable() ? spot.lengths[static_cast<std::size_t>(dimension.length_slot)] : dimension.constant;
     const bool last = spot.dimension == member.dimensions.size();
+    // Payloads of modems are bytes, and people write them as text.
     if (last && member.type == WireType::byte && value.kind == Kind::scalar) return write_text_bytes(value, size, spot);
     const auto given = static_cast<std::int64_t>(value.items.size());
     if (value.kind != Kind::null && (value.kind != Kind::list || given != size)) {
