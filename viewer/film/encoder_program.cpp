@@ -41,6 +41,7 @@ std::vector<std::string> arguments_of(const FilmFormat& format, const std::vecto
                                      "pipe:0",
                                      "-an"};
   arguments.insert(arguments.end(), codec.begin(), codec.end());
+  // Without the prefix ffmpeg takes a path with a colon for a protocol.
   arguments.push_back("file:" + part);
   return arguments;
 }

@@ -99,6 +99,7 @@ class Film {
     }
     progress.clear();
     outcome_.interrupted = experiment::caught_signal() != 0;
+    // A film that is not finished leaves an earlier file of its name alone.
     if (outcome_.interrupted) return outcome_;
     writer.finish();
     outcome_.wall_s = seconds_since(start);

@@ -54,6 +54,8 @@ void TrafficHistory::mark(std::int64_t time_us, std::uint64_t offset, const Traf
     set(links_[{names.first, names.second, ""}], marks, pair.received);
     for (const auto& [outcome, number] : pair.lost) set(links_[{names.first, names.second, outcome}], marks, number);
   }
+  // Pages draw about as many points as they have pixels, so a long log is kept more coarsely instead of growing
+  // without limit.
   if (size_ > limit_) thin();
 }
 

@@ -259,6 +259,8 @@ void LogView::handle(const bridges::ViewRequest& request) {
     if (request.op == "subscribe") fill_feed();
     return;
   }
+  // Requests come from a browser: what cannot be read is ignored, or answered with an error, but never ends the
+  // server.
   const Json message = Json::parse(request.text, nullptr, false);
   if (!message.is_object()) return;
   try {
@@ -271,6 +273,7 @@ void LogView::handle(const bridges::ViewRequest& request) {
       speed_ = std::clamp(message.value("speed", speed_), 0.01, 1000.0);
       paused_ = message.value("paused", paused_);
       loop_ = message.value("loop", loop_);
+      // Play at the end starts again, as media players do.
       if (!paused_ && now_us_ >= static_cast<double>(index_.end_us())) seek(index_.start_us());
       status_is_old_ = true;
     } else if (request.op == "control") {

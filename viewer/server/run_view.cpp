@@ -62,6 +62,7 @@ void RunView::start(const sim::World& world, std::optional<double> duration_s, c
   if (!source.programs.empty()) hello["programs"] = source.programs;
   if (source.may_launch) hello["may_launch"] = true;
   if (source.record == "recorded") past_.set_programs(source.programs);
+  // Retained, so that pages which connect later get it first.
   server_.retain("hello", json_text(hello));
   using bridges::foxglove::Control;
   foxglove_.introduce(world.config().name, version_, foxglove_control_ ? Control::run : Control::none);
