@@ -57,6 +57,8 @@ GridFrame frame_of(const shoal::occupancy_grid_t& map) {
 }
 
 std::vector<float> distances_m(const GridFrame& frame, const std::vector<char>& marked) {
+  // Squared distances separate by axes: a pass over the columns and one over the rows, each linear in the number of
+  // cells (Felzenszwalb and Huttenlocher 2012).
   std::vector<double> squares(frame.size());
   for (std::size_t i = 0; i < squares.size(); ++i) squares[i] = marked[i] != 0 ? 0 : far;
   const auto pass = [&](int lines, int length, std::size_t line_step, std::size_t step) {

@@ -166,6 +166,7 @@ Path search_path(const PlanGrid& grid, const Vector2d& from_W, const Vector2d& t
     return {{},
             fmt::format("no gap on the path{} is {:.2f} m wide", costs.enters_unknown ? "" : " on known ground",
                         2 * costs.keep_m)};
+  // Search moves between centers of cells; the path begins at the vehicle and ends at the goal itself.
   points_W.front() = from_W;
   if (points_W.size() == 1) points_W.push_back(to_W);
   points_W.back() = to_W;

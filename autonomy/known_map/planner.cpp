@@ -132,6 +132,8 @@ Planner::Decision Planner::step(std::int64_t utime) {
   const double variance_m2 = estimate_->covariance_m2[0] + estimate_->covariance_m2[4];
   const Pose2 pose{{estimate_->position_m[0], estimate_->position_m[1]}, estimate_->yaw_rad};
   if (!(variance_m2 < 2 * squared(params_.lost_std_m)) || !pose.p_W.allFinite()) {
+    // What was seen shortly before is doubtful, too: the vehicle may have been lost already and have put it at wrong
+    // places.
     if (!seen_before_.empty()) seen_ = seen_before_.front();
     seen_before_.clear();
     scans_.clear();

@@ -156,6 +156,7 @@ std::optional<Pose2> PlaceSearch::look(const OccupancyMap& map, const ScanMatche
     since_view_ = {};
     return std::nullopt;
   }
+  // Scans from one place share their errors, so they count as one view.
   const bool moved = since_view_.forward_m > params_.apart_m || since_view_.turn_rad > params_.apart_rad;
   for (Candidate& each : candidates_) {
     each.pose = matcher.match(map, beams.points_B, each.pose, loose()).pose;
@@ -166,6 +167,7 @@ std::optional<Pose2> PlaceSearch::look(const OccupancyMap& map, const ScanMatche
   ++views_;
   sort(params_.candidates);
   if (views_ < params_.min_views || candidates_.front().evidence < params_.min_mean * views_) return std::nullopt;
+  // The runner-up must be clearly worse: rooms that look alike are told apart only by moving on.
   if (candidates_.size() > 1 && candidates_[0].evidence < candidates_[1].evidence + params_.lead) return std::nullopt;
   return candidates_.front().pose;
 }

@@ -42,15 +42,19 @@ class CovarianceIntersection final : public OwnFilterEstimator<CovarianceInterse
     const double a = row.H.dot(filter_.P() * row.H);
     if (!std::isfinite(innovation_m) || !filter_.within_gate(innovation_m, a + b + R)) return;
     independence_.shared();
+    // Fixes of the sender have replaced all that it shared: no common errors are left, and an ordinary update is exact.
     if (is_independent) {
       filter_.update(row.H, innovation_m, b + R);
       return;
     }
+    // Covariance intersection (Julier and Uhlmann 1997) of own covariance over w and the sender's over 1 - w. The
+    // weight minimizes the trace of the own position after the update.
     const double trace = filter_.covariance(own).trace();
     const Minimum best = minimum_between(0.01, 0.999, [&](double w) {
       const Eigen::VectorXd DH = inflated(row.H, w), PDH = filter_.P() * DH;
       return trace / w - PDH.head<2>().squaredNorm() / (w * (DH.dot(PDH) + b / (1 - w) + R));
     });
+    // No weight gains anything: the estimate stays as it is.
     if (!(best.value < trace)) return;
     inflate(best.at);
     filter_.update(row.H, innovation_m, b / (1 - best.at) + R);

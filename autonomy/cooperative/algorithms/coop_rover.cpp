@@ -35,6 +35,7 @@ class CoopRoverFilter final : public EstimatorOf<CoopRoverFilter> {
     time_ = time;
     v_W_ = v_W;
     if (!filter_) {
+      // At rest there is no direction of motion yet, and the filter needs a heading.
       if (v_W.norm() < min_speed_mps) {
         p_W_ += moved_W;
         return;

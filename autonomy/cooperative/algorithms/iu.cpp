@@ -57,6 +57,7 @@ class InterleavedUpdate final : public EstimatorOf<InterleavedUpdate> {
       const auto sender = read_position(reader);
       if (!sender) break;
       for (const auto& [set, filter] : bank_) {
+        // Both contain information of the same vehicle, which must not be used twice.
         if ((set & senders_set) != 0) continue;
         JointFilter result = filter;
         if (result.range(own, *sender, received.own_z_m - received.sender_z_m, received.range_m, received.std_m,
@@ -67,6 +68,7 @@ class InterleavedUpdate final : public EstimatorOf<InterleavedUpdate> {
       }
     }
     for (const auto& [set, result] : results) keep_better(bank_, set, result);
+    // There are 2^n sets of vehicles, so the bank is limited.
     while (bank_.size() > max_filters) bank_.erase(worst());
   }
   Bytes make_payload(Time time, std::size_t max_bytes) override {

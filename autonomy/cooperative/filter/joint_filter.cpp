@@ -86,6 +86,7 @@ int JointFilter::add(const DeviceErrors& errors, Time time, const Vector2& p_W, 
   set(layout.heading_bias, errors.heading_bias_rad);
   set(layout.slow_heading, errors.slow_heading_rad);
   set(layout.speed_scale, errors.speed_scale);
+  // The clock is estimated as a length, the error that it makes of a range.
   set(layout.clock, sound_speed_mps_ * errors.clock_s);
   set(layout.drift, sound_speed_mps_ * errors.clock_drift);
   set(layout.slow_fix, errors.slow_fix_m);
@@ -102,6 +103,7 @@ int JointFilter::add(const Position& position) {
 }
 
 int JointFilter::copy(int part) {
+  // A copy is a past state, which never moves again. Ranges depend on its position and clock only.
   Part copied;
   copied.time = at(part).time;
   const int from_clock = at(part).layout.clock;
@@ -115,6 +117,7 @@ int JointFilter::copy(int part) {
   for (int i = 0; i < copied.layout.size; ++i) {
     const int source = from + (i < 2 ? i : from_clock);
     x_[to + i] = x_[source];
+    // At this moment copy and source are the same random variable: equal variances and correlation 1.
     P_.row(to + i) = P_.row(source);
     P_.col(to + i) = P_.col(source);
     P_(to + i, to + i) = P_(source, source);
@@ -245,6 +248,8 @@ JointFilter::Outcome JointFilter::fix(int vehicle, const Vector2& p_W, double st
   if (gate_ > 0) {
     const Matrix2 S = H * P_ * H.transpose() + R;
     if (!(innovation.dot(S.inverse() * innovation) <= position_gate)) {
+      // Several refusals in a row mean that the filter is wrong, not the receiver. Its variance grows by the squared
+      // innovation, and the fix is used.
       if (++part.refused_fixes < max_refused_fixes || !innovation.allFinite()) return Outcome::refused;
       P_.block<2, 2>(o, o) += innovation.squaredNorm() * Matrix2::Identity();
     }

@@ -148,6 +148,7 @@ void PythonHost::send(const nlohmann::json& request) {
 
 nlohmann::json PythonHost::request(const nlohmann::json& request) {
   send(request);
+  // One line of JSON for each request; the text after it belongs to the next answer.
   std::size_t end;
   while ((end = unread_.find('\n')) == std::string::npos) {
     wait_for(from_child_, POLLIN, request);
