@@ -120,6 +120,7 @@ void check_two_joints(const std::vector<sim::MotionTrack>& frames, const std::ve
     low.emplace_back(MotionRule::two_joint_low, servos.name(i), findings);
     high.emplace_back(MotionRule::two_joint_high, servos.name(i), findings);
   }
+  // A limit may depend on a joint that the motion does not move, which stays at rest.
   std::vector<double> positions;
   for (std::size_t i = 0; i < servos.size(); ++i) positions.push_back(servos.at_rest(i));
   for (std::size_t frame = 0; frame < frames.front().keys.size(); ++frame) {

@@ -214,6 +214,7 @@ std::string MotionHistory::move(const std::string& from, const std::string& to) 
   std::string operation;
   std::ifstream file(operation_of(found.back()));
   std::getline(file, operation);
+  // The present version is stored first, so that no failure loses one.
   const Version kept = store(path_, folder(), to, operation);
   try {
     if (foreign.empty()) copy_over(frames, frames_path(path_));

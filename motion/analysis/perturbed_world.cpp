@@ -158,13 +158,16 @@ sim::WorldConfig perturbed(sim::WorldConfig world, const std::string& vehicle, c
       servo.max_effort *= perturbation.effort;
       if (servo.gear.line.stall_effort) *servo.gear.line.stall_effort *= perturbation.effort;
       if (servo.control == devices::JointServo::Control::velocity && servo.kp > 0)
+        // The gain of a velocity servo is the inverse of its time constant, so a lag adds to 1 / kp.
         servo.kp = 1 / (1 / servo.kp + perturbation.lag_s);
       set_params(device, servo);
     }
   if (perturbation.ground_m > 0) {
     add_bumps(world, instance, perturbation);
+    // Above the highest bump, or the vehicle would start inside the ground.
     instance.X_WV.translation().z() += perturbation.ground_m;
   }
+  // Steps are whole microseconds.
   if (perturbation.half_step) world.physics.step_s = std::round(world.physics.step_s * 1e6 / 2) / 1e6;
   instance.config = std::make_shared<const sim::VehicleConfig>(std::move(changed));
   return world;

@@ -48,6 +48,7 @@ void list_losses(const sim::JointMotion& motion, const Keeps& keeps, Losses& los
     losses.push_back(counted(motion.sounds.size(), "sound") + (motion.sounds.size() == 1 ? " is" : " are") +
                      " not kept");
   if (motion.recorded) losses.push_back("the place of the recording is not kept");
+  // A start with default values is no loss.
   const sim::MotionStart usual;
   if (!keeps.start && (motion.start.max_velocity != usual.max_velocity || motion.start.min_s != usual.min_s))
     losses.push_back("'start' is not kept: the player chooses the way to the first pose");

@@ -101,6 +101,7 @@ class SkillMotion {
     bool has_trigger = false;
     const SkillRow* before = nullptr;
     for (const SkillRow* row : played_rows()) {
+      // Such a row waits for an angle of the IMU, which a motion with fixed times cannot express.
       has_trigger = has_trigger || row->trigger_axis != 0;
       int distance = 0;
       for (std::size_t j = 0; before != nullptr && j < skill_joints; ++j)

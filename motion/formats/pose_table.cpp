@@ -115,6 +115,7 @@ class TableBuilder {
       tracks_.push_back(&all_tracks_[i]);
       rest_.push_back(0);
     };
+    // The format needs all joints in its own order, so those that the motion does not name are filled in at rest.
     if (list != nullptr && list->complete) {
       for (const auto& [servo, name] : list->names) {
         std::size_t i = 0;

@@ -163,6 +163,7 @@ sim::JointMotion read_ros(const MotionSource& source, Losses& losses) {
   diagnostics.throw_if_any();
   const RosTrajectory& file = read.trajectory;
   check_points(file, diagnostics, root.place);
+  // Sizes are checked against 'joint_names', which must be read without errors first.
   diagnostics.throw_if_any();
   const std::vector<std::string> joints = joints_called(source, "ros", file.joints, root.place);
   sim::JointMotion motion;
@@ -173,6 +174,7 @@ sim::JointMotion read_ros(const MotionSource& source, Losses& losses) {
     const RosPoint& point = file.points[i];
     has_effort = has_effort || !point.effort.empty();
     has_unused_accelerations = has_unused_accelerations || (!point.accelerations.empty() && point.velocities.empty());
+    // Between points with velocities ROS controllers follow a cubic spline, with accelerations a quintic one.
     if (i > 0 && !point.velocities.empty() && !file.points[i - 1].velocities.empty()) {
       is_curved = true;
       has_unused_accelerations =

@@ -168,12 +168,14 @@ std::vector<std::string> TekkotsuOutputs::matches(const std::string& name) const
 
 std::vector<std::string> TekkotsuOutputs::joints_of(const experiment::LineReader& lines, const experiment::Word& word) {
   std::string name(word.text);
+  // Tekkotsu ignores '~' at the end of a name.
   while (name.ends_with('~')) name.pop_back();
   if (name.empty()) lines.fail(word, "must be the name of an output");
   check_joint_name(name, lines.place(word.column));
   if (source_.names.empty()) return {name};
   std::vector<std::string> found = matches(name);
   if (found.empty()) {
+    // A name without a side means both sides.
     const std::vector<std::string> left = matches("L" + name), right = matches("R" + name);
     if (left.size() == 1 && right.size() == 1) found = {left[0], right[0]};
   } else if (found.size() > 1) {

@@ -53,6 +53,7 @@ sim::JointMotion leg_motion(const std::string& vehicle, const std::vector<Leg>& 
   motion.loop = true;
   motion.frame_s = frame_s;
   motion.start = {.max_velocity = 2, .min_s = 0.5};
+  // One key more than frames: the last one repeats the first, so that the loop closes.
   motion.keys.resize(static_cast<std::size_t>(frames) + 1);
   for (int i = 0; i <= frames; ++i) motion.keys[static_cast<std::size_t>(i)].at_s = i * frame_s;
   for (const Leg& leg : legs) {

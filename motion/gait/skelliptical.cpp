@@ -32,6 +32,7 @@ Skelliptical::Skelliptical(const sim::VehicleConfig& vehicle)
       frame_s_(frame_s_of(vehicle)),
       scale_(reach_m(legs_[0]) / ers7_reach_m) {
   const std::vector<double> start = fast_forward();
+  // Lengths were found for the ERS-7, and scale with the reach of the legs.
   const auto length = [&](const char* name, Number number, double low_m, double high_m) {
     numbers_.push_back({name, scale_ * low_m, scale_ * start[number], scale_ * high_m});
   };

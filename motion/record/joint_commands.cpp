@@ -99,6 +99,8 @@ bool JointCommands::wish_of(const std::string& name) {
 void JointCommands::key(const std::string& name, bool is_down) {
   for (Keys& keys : keys_) {
     if (name == keys.plus) {
+      // A press that ends before the next frame must still move the joint, so it is kept beside the present state of
+      // the key.
       keys.plus_pressed = keys.plus_pressed || is_down;
       keys.plus_held = is_down;
       return;
