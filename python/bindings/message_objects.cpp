@@ -303,6 +303,7 @@ class Encoder {
       case WireType::string:
         return text(value);
       case WireType::boolean:
+        // Strict: a number where the type has a boolean is most likely meant for another member.
         if (!PyBool_Check(value.ptr()) && !is_numpy_bool(value)) refuse(path_, "True or False", value);
         out_ += static_cast<char>(PyObject_IsTrue(value.ptr()));
         return;
