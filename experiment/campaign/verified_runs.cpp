@@ -77,6 +77,7 @@ Verified compare_with_row(const StudyRun& run, const StudyRow& row) {
     return found == figures.end() ? std::optional<double>() : found->second;
   };
   for (const std::string& name : names) {
+    // CPU times differ from run to run.
     if (name.ends_with(std::string(".") + time_of_event)) continue;
     ++verified.figures;
     const auto there = value_in(row.figures, name), here = value_in(run.record->metrics, name);

@@ -252,6 +252,7 @@ sim::Bytes DriveMapping::payload(const Target& target, const DriveValues& values
   switch (target.form) {
     case Form::twist: {
       shoal::twist_command_t command{};
+      // With kind tilt the speed follows from the tilt; the twist only turns.
       command.forward_mps = kind_ == DriveKind::tilt ? 0 : forward * profile_.twist.forward_mps;
       command.turn_radps = turn * (kind_ == DriveKind::tilt ? profile_.tilt.turn_radps : profile_.twist.turn_radps);
       return stamped(command, utime);
@@ -297,6 +298,7 @@ sim::Bytes DriveMapping::payload(const Target& target, const DriveValues& values
     }
     case Form::joint_settings: {
       shoal::joint_settings_t command{};
+      // NaN: as before, for all but the velocity.
       command.axis = -1;
       command.velocity = joint;
       command.max_force = command.low_stop = command.high_stop = nothing;

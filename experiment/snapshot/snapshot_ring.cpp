@@ -111,6 +111,7 @@ sim::Bytes without_zeros(std::span<const std::byte> bytes) {
 sim::Bytes with_zeros(std::span<const std::byte> bytes) {
   sim::Bytes out(number_at(bytes, 0));
   const std::size_t words = out.size() / word_bytes;
+  // The size, then pairs of numbers: so many words of zeros, so many others, which follow.
   std::size_t from = sizeof(std::uint64_t), to = 0;
   while (to < words) {
     const std::uint64_t pair = number_at(bytes, from);

@@ -96,6 +96,7 @@ AlgorithmCell cell_of(const World& world, const std::string& label) {
   for (const StudyRun* run : world.runs) {
     const double rms = figure_of(*run, label + ".rms_m"), ratio = figure_of(*run, label + ".ratio");
     if (!std::isfinite(rms)) continue;
+    // An efficiency of some seeds would belong to another set of runs than the rms.
     bounded = bounded && ratio > 0;
     seeds.push_back({rms * rms, rms / ratio * (rms / ratio)});
     nees.push_back(figure_of(*run, label + ".nees_mean"));
@@ -119,6 +120,7 @@ AlgorithmCell cell_of(const World& world, const std::string& label) {
   cell.trust = trust_of(of_nees);
   cell.inside_95 = statistics_of(inside).mean;
   cell.bytes_per_h = statistics_of(bytes).mean;
+  // Other work on the machine only makes times longer, so the median is less disturbed than the mean.
   cell.us_per_event = statistics_of(times).median;
   return cell;
 }

@@ -50,10 +50,12 @@ struct TeamSums {
     if (rms) checked(vehicle, "rms_m", *rms, std::numeric_limits<double>::max());
     if (mean) checked(vehicle, "nees_mean", *mean, std::numeric_limits<double>::max());
     if (share) checked(vehicle, "inside_95_share", *share, 1);
+    // Without one vehicle the figure of the team would look better than it is.
     if (!rms || !mean || !share || !(count > 0)) {
       whole = false;
       return;
     }
+    // Weighted by samples, so that the root of the sum is the rms of all estimates of the team.
     samples += count;
     squares += count * *rms * *rms;
     nees += count * *mean;
@@ -195,6 +197,7 @@ void add_algorithm_figures(const LoadedStudy& study, StudyRun& run) {
       throw std::runtime_error(path + ": algorithm must be '" + algorithms[i] + "', got '" +
                                sim::shortened(sim::printable(entry.text("name"))) + "'");
     const std::string label = algorithm_label(algorithms[i]);
+    // An algorithm that cannot navigate this world has no figures; the run itself is fine.
     if (entry.has("left_out")) {
       for (const AlgorithmFigure& figure : algorithm_figures())
         run.record->metrics[label + "." + figure.name] = std::nullopt;

@@ -163,6 +163,7 @@ std::vector<StudyPoint> design_points(const StudyDesign& design, const std::vect
   for (std::size_t number = 0; number < count; ++number) {
     StudyPoint& point = points.emplace_back();
     point.values.resize(factors.size());
+    // The last factor varies fastest, as in nested loops.
     std::size_t rest = number;
     for (std::size_t k = factors.size(); k-- > 0;) {
       const std::size_t levels = factors[k].grid_levels();

@@ -81,6 +81,7 @@ TeamBound::Layout TeamBound::make_layout(const VehicleErrors& errors, int first,
     if (errors.gps) add_slow(errors.gps->position, axis, Known::gps_drift, Known::gps_drift, layout.fixes);
   const bool drifts = errors.clock_drift_std > 0 || errors.clock_random_walk_fm > 0;
   const bool errs = errors.clock_offset_std_s > 0 || errors.clock_white_fm > 0 || drifts;
+  // The remaining error of a disciplined clock is white and counts as noise of its stamps.
   if (errs && !errors.disciplined() && !knows(Known::clock)) {
     layout.clock = add(errors.clock_offset_std_s);
     if (drifts) layout.frequency = add(errors.clock_drift_std);
@@ -128,6 +129,8 @@ void TeamBound::add_range(sim::Time sent, const Site& sender, sim::Time arrived,
   const double stamps_s2 =
       square_of(errors(sender.vehicle).stamp_std_s()) + square_of(errors(receiver.vehicle).stamp_std_s());
   event.variance_m2 = square_of(event.sound_speed_mps) * stamps_s2 + more_variance_m2;
+  // The sound leaves, arrives and is known at different times: the errors of both vehicles enter when it leaves and
+  // arrives, but only the last event adds information.
   event.what = What::sending;
   event.site = sender;
   add_event(sent, event);
@@ -300,6 +303,8 @@ void TeamBound::handle(const Event& event, sim::Time at) {
       use_sighting(event, at);
       return;
     case What::sending:
+      // The error at the time of sending becomes a state of its own, which keeps its correlations until the range is
+      // used.
       covariance_.append(-point_row(event.site, at, event.toward) -
                          clock_row(event.site.vehicle, event.sound_speed_mps));
       pending_.push_back(event.packet);
@@ -307,6 +312,7 @@ void TeamBound::handle(const Event& event, sim::Time at) {
     case What::arrival: {
       const Eigen::Index index = pending_index(event.packet);
       if (index < 0) return;
+      // Now the state is the whole error of the range: that of the arrival less that of the sending.
       RowVectorXd row = point_row(event.site, at, event.toward) + clock_row(event.site.vehicle, event.sound_speed_mps);
       if (sound_speed_index_ >= 0) row[sound_speed_index_] = event.range_m;
       covariance_.add(index, row);

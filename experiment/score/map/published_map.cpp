@@ -27,6 +27,7 @@ PublishedMap decode_map(std::span<const std::byte> payload) {
   published.utime = message.utime;
   published.map.frame = {message.origin_m[0], message.origin_m[1], message.cell_m, message.width, message.height};
   published.map.cells.reserve(message.cells.size());
+  // About the thresholds of ROS map_server, 0.65 and 0.196.
   for (const std::int8_t percent : message.cells)
     published.map.cells.push_back(percent >= 65                   ? Cell::occupied
                                   : percent >= 0 && percent <= 20 ? Cell::free
