@@ -116,6 +116,7 @@ struct BashCases {
           values += "    " + in_quotes(path + " " + name) + ") " + bash_value(value) + " ;;\n";
       });
     }
+    // bash splits the list at blanks, so the last one must go.
     if (!words.empty()) words.pop_back();
     offers += "      " + in_quotes(path) + ") " + positional + "; _words+=\" \"" + in_quotes(words) + " ;;\n";
     for (const CLI::App* below : commands_of(command)) add(*below, word_commands);

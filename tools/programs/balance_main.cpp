@@ -153,6 +153,7 @@ int run(int argc, char** argv) {
               << " ms late\n";
     return autonomy::exit_ok;
   }
+  // Required here and not by the parser, since --delay-margin needs no vehicle.
   if (options.name.empty()) throw std::invalid_argument("--name is required");
   autonomy::check_speeds(options.speeds);
   return balance(options);

@@ -46,6 +46,7 @@ int drive(const Options& options) {
     if (decision.dead_reckoning) client.publish(name + ".dead_reckoning", *decision.dead_reckoning);
     if (decision.send) client.publish(name + ".modem.cmd", *decision.send);
   });
+  // Counts on stderr tell a silent modem from a filter that refuses its ranges.
   const autonomy::CoopAuv::Counts& counts = auv.counts();
   std::cerr << name << ": " << counts.frames << " frames received, " << counts.bad_frames << " bad; " << counts.ranges
             << " ranges used, " << counts.refused << " refused; " << counts.sent << " frames sent\n";

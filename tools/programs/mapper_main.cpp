@@ -49,6 +49,7 @@ int map(const Options& options) {
   client.subscribe<shoal::planar_lidar_t>(
       prefix + "lidar", [&](const shoal::planar_lidar_t& scan) { state.mapper.receive(scan); }, Finite::required);
   const int exit_code = autonomy::take_part(client, options.participation, state, [&](std::int64_t utime) {
+    // CPU time, not wall time: the program shares the machine with the simulator.
     const std::clock_t started = std::clock();
     const auto estimate = state.mapper.step();
     if (!estimate) return;

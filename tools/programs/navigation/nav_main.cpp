@@ -48,6 +48,8 @@ int drive(const Options& options) {
   shoal::Client client(name, options.participation.lcm_url);
   State pilot;
   navigation::NavVehicle vehicle;
+  // The team is that of the resolved world, which the run publishes; until it comes, the program only takes part in
+  // the lockstep.
   client.subscribe<shoal::sim_info_t>("sim.info", [&](const shoal::sim_info_t& info) {
     if (!vehicle.name.empty()) return;
     const auto team = std::make_shared<const navigation::NavTeam>(navigation::team_of_text(info.resolved_config));

@@ -161,7 +161,9 @@ void check(const std::string& path, const sim::LoadOptions& options) {
     return check_in_water(std::move(vehicle), options);
   }
   sim::LoadOptions with_messages = options;
+  // Actions of events hold messages, which are encoded here so that mistakes in their fields are found.
   with_messages.encode_message = shoal::encode_own_message;
+  // Without the resolved text, which only a run publishes.
   with_messages.resolve = false;
   sim::LoadedWorld loaded = sim::load_world(path, with_messages);
   experiment::read_programs(loaded, {true, options.allow_paths});

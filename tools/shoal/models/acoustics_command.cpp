@@ -103,6 +103,7 @@ std::vector<verification::AcousticPacket> packets_of(const AcousticsArguments& a
   }
   if (arguments.micromodem)
     for (verification::AcousticPacket packet : verification::micromodem_packets()) {
+      // A bandwidth that is given holds for all packets.
       if (arguments.bandwidth_Hz) packet.bandwidth_Hz.reset();
       packets.push_back(packet);
     }
@@ -110,6 +111,7 @@ std::vector<verification::AcousticPacket> packets_of(const AcousticsArguments& a
   if (modem != nullptr)
     return {*verification::parse_packet(fmt::format("{}:{}:{}", sim::to_string(modem->modulation), modem->bit_rate_bps,
                                                     std::int64_t{modem->frames} * modem->frame_bytes))};
+  // Without a modem: examples, from slow and robust to fast.
   for (const char* text : {"fsk:80:32", "psk:500:64", "psk:5300:256", "dpsk:1200:256"})
     packets.push_back(*verification::parse_packet(text));
   return packets;

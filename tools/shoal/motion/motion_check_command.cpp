@@ -29,6 +29,7 @@ int check(const CheckArguments& arguments) {
   if (arguments.fixed.empty()) return findings.empty() ? exit_ok : exit_failed;
   sim::JointMotion fixed = motion::mended(motion, vehicle);
   fixed.name = motion::motion_name_of(arguments.fixed);
+  // What cannot be written is refused before anything is.
   check_frames(arguments.fixed, fixed, arguments.overwrite);
   motion::write_motion(arguments.fixed, fixed);
   const std::size_t left = motion::check_motion(fixed, vehicle).size();

@@ -136,6 +136,7 @@ int compare(CompareArguments arguments) {
           body.max_m * mm_per_m, body.max_at_s, body.rms_m * mm_per_m, body.end_m * mm_per_m, body.end_at_s);
     }
     if (!arguments.png.empty()) draw(arguments.png, first, second, difference, name_of);
+    // Ends are sums of frames, so they may differ by rounding.
     const bool is_equal = difference.max() <= tolerance && difference.only_first.empty() &&
                           difference.only_second.empty() &&
                           std::abs(difference.first_end_s - difference.second_end_s) <= 1e-9;

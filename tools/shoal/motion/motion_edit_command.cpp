@@ -99,6 +99,7 @@ int edit(const EditArguments& arguments, const Edit& change) {
   try {
     sim::JointMotion changed = change(arguments, motion);
     std::error_code error;
+    // --output may name the same file by another path, which must get a history, too.
     const bool in_place =
         arguments.output.empty() || std::filesystem::equivalent(arguments.file, arguments.output, error);
     const std::string output = in_place ? arguments.file : arguments.output;

@@ -167,6 +167,7 @@ int evolve(EvolveArguments arguments) {
   motion::Evolution evolution(loaded.config, vehicle, *gait, arguments.options);
   sim::log_info("start of the search: {:.1f} mm/s {}", evolution.start().value_mps * mm,
                 in_worlds(evolution.perturbations().size()));
+  // The best so far is always in the file: the search takes hours, and may be ended at any time.
   write_best(arguments, *gait, evolution);
   const double start_mps = evolution.start().value_mps;
   std::vector<motion::EvolveGeneration> generations{{0, start_mps, start_mps}};

@@ -88,6 +88,7 @@ int import_motion(FormatArguments& arguments) {
   if (!may_lose(arguments, losses)) return exit_failed;
   if (!motion.frames.empty())
     motion.frames_file = fs::path(arguments.output).replace_extension(".csv").filename().string();
+  // The file is read again as text before it is written: a motion that Shoal itself refuses must not be left behind.
   try {
     motion::check_readable(arguments.output, motion);
   } catch (const motion::EditError& error) {

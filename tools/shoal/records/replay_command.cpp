@@ -31,6 +31,7 @@ constexpr std::size_t max_lines = 60;
 
 int run(ReplayArguments& arguments) {
   if (!arguments.replay.world.empty()) arguments.replay.world = experiment::world_file(arguments.replay.world);
+  // Checked before the replay, which may take hours.
   if (!arguments.report.empty()) check_writable(arguments.report);
   experiment::catch_signals(true);
   const experiment::ReplayOutcome outcome = experiment::replay(arguments.replay);

@@ -48,6 +48,7 @@ Json value_schema(const sim::ArgDeclaration& arg) {
     case sim::ArgType::integer:
       return number_schema(arg);
     case sim::ArgType::text:
+      // YAML reads a text such as 12 or true as another type; the argument gets what is written.
       return {{"type", {"string", "number", "boolean"}}};
     case sim::ArgType::flag:
       return {{"type", "boolean"}};

@@ -39,6 +39,8 @@ int study(const std::string& path, const experiment::StudyChanges& changes, expe
   experiment::catch_signals(true);
   try {
     std::vector<experiment::StudyRun> runs = experiment::plan_study(loaded, options.output);
+    // The manifest is written before the first run, so that an interrupted study can be continued by `shoal study
+    // run`.
     experiment::write_manifest(options.output, loaded, runs);
     experiment::check_outputs(options.output, loaded.config);
     experiment::StudyProgress progress{runs.size()};

@@ -60,9 +60,11 @@ int tune(TuneArguments& arguments) {
     experiment::Tuning tuning(std::move(study), options);
     const std::string table = options.study.output + "/tune.csv";
     experiment::make_folders(options.study.output, options.study.output);
+    // What cannot be written is refused before the first run.
     experiment::refuse_links(options.study.output, table);
     experiment::check_whole_file(table);
     tuning.run([&](int generation) {
+      // After each generation, so that the table is whole when the search is interrupted.
       experiment::write_whole_file(table, tuning.to_csv());
       const experiment::TunedPoint& best = *tuning.best();
       const std::string failed = best.failed > 0 ? "; FAILED: " + failed_text(best) : "";

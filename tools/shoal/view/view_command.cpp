@@ -155,9 +155,11 @@ int view_bus(const ViewArguments& arguments) {
       view.flush();
       next_flush = now + tick;
     }
+    // A run publishes its scene only every 10 s; asking for it shows the page at once.
     if (!view.has_scene() && now >= next_request) {
       ask_for_scene(lcm);
       next_request = now + ask_interval;
+      // The first request may have been too early; after two the user is told what is missing.
       if (++requests == 2)
         sim::log_info(
             "waiting for sim.scene: a run sends it on request; a played log repeats it as recorded, every 10 s or, if "
