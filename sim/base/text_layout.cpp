@@ -23,6 +23,7 @@ bool starts_character(char c) {
 
 int text_columns(int file_descriptor) {
   int columns = 0;
+  // COLUMNS goes first: scripts and tests set it to get the same layout everywhere.
   if (const char* text = std::getenv("COLUMNS")) {
     const char* end = text + std::strlen(text);
     const auto [at, error] = std::from_chars(text, end, columns);

@@ -74,6 +74,7 @@ void for_each_measured(tbb::task_arena& arena, std::size_t count, const std::fun
   });
   double max_piece_s = 0;
   for (std::size_t i = 0; i < count; ++i) {
+    // Pieces that were shared further have counted their own share; only the rest of a piece is undivided.
     const double undivided_s = took_s[i] - pieces[i].own_s;
     measured_work->shared_s += undivided_s + pieces[i].all_s;
     max_piece_s = std::max(max_piece_s, undivided_s + pieces[i].max_piece_s);

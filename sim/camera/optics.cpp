@@ -209,7 +209,9 @@ std::optional<Vector3d> Optics::direction_S(double u, double v) const {
     return Vector3d(1, -p->x(), -p->y()).normalized();
   }
   const double radius = distorted.norm();
+  // Beyond the fold of the distortion two directions share a pixel; such pixels stay black.
   if (radius >= fold_radius_ || radius > distorted_radius(last_good_)) return std::nullopt;
+  // sin(angle) / radius below would be 0 / 0.
   if (radius == 0) return Vector3d::UnitX();
   const double angle = undistorted_radius(radius);
   const double side = std::sin(angle) / radius;
@@ -225,6 +227,7 @@ std::optional<Vector2d> Optics::project(const Vector3d& p_S) const {
     const double radius = distorted_radius(angle);
     place = across > 0 ? Vector2d(Vector2d(-p_S.y(), -p_S.z()) * (radius / across)) : Vector2d::Zero();
   } else {
+    // Behind the camera the division would mirror the point into the image.
     if (!(p_S.x() > 0)) return std::nullopt;
     const Vector2d ideal(-p_S.y() / p_S.x(), -p_S.z() / p_S.x());
     if (distorted_ && ideal.norm() > last_good_) return std::nullopt;

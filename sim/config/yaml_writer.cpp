@@ -118,6 +118,7 @@ void append_block(const ConfigNode& node, std::size_t indent, bool first_line_is
 
 void append_entry(const ConfigNode::Entry& entry, std::size_t indent, std::string& out) {
   const std::string key = key_text(entry.key, false);
+  // YAML 1.2 limits keys without '?' to 1024 characters.
   if (key.size() > max_simple_key)
     out += "? " + key + "\n" + std::string(indent, ' ') + ":";
   else

@@ -176,6 +176,7 @@ void Hydrodynamics::step_by_groups(double gravity_mps2, const Actors& actors, Th
   const BodyMotion motion = wetted.body->motion_for_forces(step_s_);
   around.w_B = motion.R_WB.transpose() * motion.w_WB_W;
   around.motion = motion;
+  // Even the highest crest does not reach it: no wave needs to be evaluated.
   if (motion.p_WB.z() - wetted.radius_m > highest_m) {
     around.water.surface_m = highest_m;
     around.v_B = motion.R_WB.transpose() * (motion.v_WB_W - around.water.velocity_W);

@@ -42,6 +42,7 @@ double ImmersedBodies::add(Body& body, const BodyConfig& config, double gravity_
   added.pieces = pieces_of(body, config, std::numeric_limits<double>::infinity(), warnings);
   if (added.pieces.empty()) return 0;
   find_stiffness(added, config.place, gravity_mps2, warnings);
+  // The stiffness is that of whole parts. For forces long parts are cut, so that a wave is felt at several sections.
   if (medium_.has_waves()) {
     std::vector<Warning> known;
     added.pieces = pieces_of(body, config, section_m, known);
@@ -109,6 +110,7 @@ void ImmersedBodies::remove_group(int group) {
 void ImmersedBodies::step(double gravity_mps2, std::span<const BodyInWater> around, ThreadPool* threads) {
   FirstFailure failure;
   for_each_block(threads, bodies_.size(), [&](std::size_t begin, std::size_t end) {
+    // One for each block of bodies: its lists keep their memory.
     ImmersedDrag drag;
     for (std::size_t i = begin; i < end; ++i) {
       const ImmersedBody& body = bodies_[i];

@@ -216,6 +216,7 @@ std::vector<ImmersedPiece> pieces_of(const PartConfig& part, double max_m, const
     piece.R_BP = R_BG;
     piece.p_BP = part.position_m + R_BG * piece.p_BP;
     piece.added_mass_coefficient = part.added_mass_coefficient;
+    // All of it under a water plane above its highest point.
     piece.whole = piece.immersed({Vector3d::UnitZ(), 2 * piece.radius_m + 1});
   }
   return pieces;

@@ -42,6 +42,7 @@ std::vector<std::string_view> ctd_cells(std::string_view line) {
   while (true) {
     const auto comma = line.find(',');
     std::string_view cell = line.substr(0, comma);
+    // Quotes are dropped: some programs quote the cells of a header.
     const auto begin = cell.find_first_not_of(" \t\r\"");
     cell = begin == cell.npos ? std::string_view{} : cell.substr(begin, cell.find_last_not_of(" \t\r\"") - begin + 1);
     cells.push_back(cell);

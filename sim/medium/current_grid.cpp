@@ -191,6 +191,7 @@ Vector3d CurrentGrid::velocity_W(double x_m, double y_m) const {
   if (!edge_ && !contains(x_m, y_m)) return Vector3d::Zero();
   const double u = std::clamp((x_m - west_m_) / cell_x_m_, 0.0, static_cast<double>(columns_ - 1));
   const double v = std::clamp((y_m - south_m_) / cell_y_m_, 0.0, static_cast<double>(rows_ - 1));
+  // At the last row or column the cell before it is used, with a share of 1.
   const int i = std::min(static_cast<int>(u), columns_ - 2), j = std::min(static_cast<int>(v), rows_ - 2);
   const double a = u - i, b = v - j;
   const auto* at =

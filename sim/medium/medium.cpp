@@ -66,6 +66,7 @@ LocalWater Medium::water_at(const Vector3d& p_W) const {
     water.velocity_W = motion.velocity_W;
     water.acceleration_W = motion.acceleration_W;
   }
+  // Depth counts from the wavy surface: a layer moves up and down with it.
   const double depth_m = water.surface_m - p_W.z();
   water.density_kgpm3 = column_->density_kgpm3(depth_m);
   water.velocity_W += current_->velocity_W(p_W.x(), p_W.y(), depth_m);

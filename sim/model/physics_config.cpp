@@ -43,6 +43,7 @@ void PhysicsConfig::read(ParamReader& in) {
 
 void ContactConfig::read(ParamReader& in) {
   in.require("between");
+  // Worlds name these two without declaring them.
   in.declare("material", "any");
   in.read_references("between", between, "material", "two materials; any stands for every one");
   if (between.size() != 2) {

@@ -225,6 +225,7 @@ std::string channel_of(const ProgramDeclaration& declaration, const ConfigNode& 
     const std::string text = text_of_arg(declaration, args, channel.substr(open + 1, close - open - 1));
     if (text.empty()) return {};
     channel.replace(open, close + 1 - open, text);
+    // An inserted text may contain braces, which are no placeholders.
     open += text.size();
   }
   return channel;

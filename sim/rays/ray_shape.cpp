@@ -245,6 +245,7 @@ Vector3d RayShape::half_extents_W() const {
     case Kind::capsule:
       return turned(0, 0, size[2]) + Vector3d::Constant(size[0]);
     case Kind::cylinder:
+      // The disc at each end reaches sqrt(1 - a^2) of its radius along a world axis whose cosine with the axis is a.
       return turned(0, 0, size[2]) + size[0] * (1 - axis_W(2).array().square()).max(0).sqrt().matrix();
     default:
       return turned(size[0], size[1], size[2]);

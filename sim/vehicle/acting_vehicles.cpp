@@ -73,6 +73,7 @@ bool ActingVehicles::begin_by_groups() {
   }
   failure_.emplace();
   acted_.assign(vehicles_.size(), false);
+  // Groups can be stepped one by one only if no vehicle acts on the body of another.
   return std::all_of(vehicles_.begin(), vehicles_.end(), [this](const Range& vehicle) { return acts_alone(vehicle); });
 }
 

@@ -200,6 +200,7 @@ bool MountedDevice::works() const {
 
 void MountedDevice::receive(Time now, std::span<const std::byte> payload, std::vector<std::string>* bad) {
   if (!works() || faults_.silent()) return;
+  // A stuck actuator keeps its last command; after an emergency stop it gets none until the release.
   if (type_.is_actuator() && (vehicle_.systems().estopped || faults_.stuck())) return;
   wake();
   try {
@@ -228,7 +229,9 @@ bool Acting::take_command(Time now) {
 void Acting::act(Time now, double step_s) {
   const bool works = always_on || systems->powered;
   if (is_actuator) {
+    // Never commanded is not stale: the actuator is in its initial state.
     const bool stale = watchdog.count() > 0 && last_command.count() >= 0 && !stuck && now - last_command > watchdog;
+    // Once only: an actuator may move on its own in its safe state.
     if ((stale || systems->estopped || !works) && !safe) {
       actuator->make_safe(safe_state);
       safe = true;

@@ -68,6 +68,8 @@ void erase_number(std::vector<std::uint32_t>& ascending, std::uint32_t number) {
 void StepSchedule::add(MountedDevice& device, DeviceTable& devices) {
   const auto number = static_cast<std::uint32_t>(device.number());
   if (device.mailbox()) {
+    // By number, so that messages are taken in the same order after a snapshot, whatever was added and removed before
+    // it.
     const auto at = listening_.empty() || listening_.back().number < number
                         ? listening_.end()
                         : std::partition_point(listening_.begin(), listening_.end(),
@@ -156,6 +158,7 @@ void StepSchedule::advance_clocks(const StepClock& clock, const Medium& medium) 
     if (clock.now() < clocked.due) continue;
     VehicleClock& own = clocked.vehicle->clock();
     std::optional<double> temperature_C;
+    // The temperature is costly, and only an oscillator that depends on it asks.
     if (own.wants_temperature(clock.now())) {
       const Vector3d p_W = clocked.vehicle->X_WV().translation();
       if (medium.in_water(p_W)) temperature_C = medium.temperature_C(p_W);

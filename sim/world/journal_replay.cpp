@@ -107,6 +107,7 @@ void JournalReplay::apply_vehicle(const Entry& entry) {
 
 void JournalReplay::apply_object(const Entry& entry) {
   if (parts_.entities.find_object(entry.name) != nullptr) throw SnapshotError("the snapshot has an object twice");
+  // The numbers must be those of the run: they are part of the state, and of its hashes.
   parts_.entities.prescribe_object_number(entry.number);
   parts_.physics.prescribe(entry.numbers);
   if (entry.in_file >= 0) {

@@ -30,6 +30,7 @@ void WorldBuilder::build() {
   parts_.acoustics = std::make_unique<AcousticChannel>(
       config.acoustics, AcousticSurroundings{parts_.medium, parts_.physics, parts_.events, parts_.seed()});
   parts_.acoustics->set_observer(parts_.observer);
+  // Materials come first, since parts name them.
   parts_.surfaces.start(config);
   add_objects();
   add_vehicles();
@@ -83,6 +84,7 @@ const WorldObject& WorldBuilder::build_object(std::shared_ptr<const ObjectConfig
     build_bodies_of(object, *config, X_WE, config->fixed);
     build_joints_of(object, *config, X_WE);
   } catch (...) {
+    // What was added must go again, or a half-built group would stay in the world.
     parts_.hydrodynamics->remove_group(object.group());
     parts_.physics.remove_group(object.group());
     throw;

@@ -281,6 +281,7 @@ std::set<std::string> subscribed_channels_of(const WorldConfig& world) {
 void warn_of_config(const WorldConfig& world, const ConfigNode& root, Warnings& warnings,
                     std::optional<double> duration_s) {
   const double given_s = duration_s.value_or(world.run.duration_s);
+  // A run without an end reaches every event.
   const bool endless = given_s == 0 || world.run.duration_s == 0;
   const ConfigCheck check(world, root, warnings, endless ? 0 : std::max(given_s, world.run.duration_s));
   check.check_vehicles();
