@@ -94,6 +94,7 @@ ServoOfVehicle PanTiltZoom::find_servo(const sim::DeviceContext& context, const 
   for (const ServoOfVehicle& servo : servos_of(context.vehicle.config())) {
     known.push_back(servo.device);
     if (!servo.is_called(name)) continue;
+    // A pan or tilt is an angle, and a slider moves in meters.
     if (context.joint(servo.params->joint).type() == sim::JointType::slider)
       refuse(context, fmt::format("'{}' must turn: the joint of '{}' is a slider", key, name));
     return servo;

@@ -52,6 +52,7 @@ void Lag::prepare(double h) {
 }
 
 double Lag::follow(double target, double step_s) {
+  // The coefficients are exact for a constant target, whatever the step, and are computed once.
   if (step_s != prepared_for_s_) prepare(step_s);
   const double rest = value_ - target;
   const double max = rate_limit_ * step_s;
@@ -61,6 +62,7 @@ double Lag::follow(double target, double step_s) {
   if (std::abs(change) > max)
     value_ += std::copysign(max, change);
   else
+    // Written so that without a lag the value is exactly the target.
     value_ = target + (rest + change);
   return value_;
 }

@@ -56,6 +56,7 @@ AckermannDrive::AckermannDrive(const Params& params, const sim::DeviceContext& c
     : params_(params),
       vehicle_(context.vehicle),
       steer_{&wheel_joint(context, params.left_steer_joint), &wheel_joint(context, params.right_steer_joint)} {
+  // Places of the wheels count from the middle of the front axle, about which Ackermann's condition is written.
   const sim::Vector3d front_V = (joint_config(vehicle_, params.left_steer_joint).anchor_m +
                                  joint_config(vehicle_, params.right_steer_joint).anchor_m) /
                                 2;

@@ -220,6 +220,7 @@ void NaiveDriveController::receive(sim::Time, std::span<const std::byte> payload
   }
   const auto command = shoal::decode<shoal::helm_command_t>(payload, Finite::any);
   for (const double value : {command.speed_mps, command.heading_rad, command.depth_m})
+    // NaN is allowed in a helm command: as before.
     if (std::isinf(value)) throw std::runtime_error("speed, heading and depth must not be infinite");
   if (!std::isnan(command.altitude_m)) throw std::runtime_error("it holds no altitude: altitude_m must be NaN");
   if (drive_.surface() && !std::isnan(command.depth_m))

@@ -84,10 +84,12 @@ void Compass::measure(const sim::SenseContext& context) {
 }
 
 void Compass::disturb(double dt_s, sim::Random& random) {
+  // The filter runs in any mode, so that a change of the mode finds it settled.
   const sim::Vector3d by_force_S = tilt_filter_.apply(strapdown_.f_S(), dt_s);
   if (params_.tilt_compensation == TiltCompensation::none) up_S_ = sim::Vector3d::UnitZ();
   if (params_.tilt_compensation == TiltCompensation::accelerometer) up_S_ = by_force_S;
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> soft_iron(params_.soft_iron.data());
+  // Soft iron distorts the earth's field, hard iron adds to it.
   reading_.field_S_uT = soft_iron * reading_.field_S_uT + params_.hard_iron_uT;
   field_noise_.apply(std::span<double>(reading_.field_S_uT.data(), 3), dt_s, random);
   double heading_rad = heading_of(reading_.field_S_uT, up_S_);

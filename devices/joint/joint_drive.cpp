@@ -109,6 +109,7 @@ void JointDrive::check_stops(const Axis& axis, const Settings& settings) const {
     const std::string error = std::isfinite(stop) ? sim::error_of_stop(joint_.type(), stop) : "";
     if (!error.empty()) throw std::runtime_error(text(error));
   }
+  // An infinite stop means none, but only on its own side.
   if (settings.low_stop == std::numeric_limits<double>::infinity() ||
       settings.high_stop == -std::numeric_limits<double>::infinity())
     throw std::runtime_error(text("no stop is -infinity for 'low_stop' and +infinity for 'high_stop'"));
@@ -137,6 +138,7 @@ JointDrive::Axis JointDrive::with(Axis axis, const Settings& settings) const {
 }
 
 void JointDrive::set(int axis, const Settings& settings) {
+  // All axes are checked before any is changed.
   std::vector<Axis> changed = axes_;
   bool found = false;
   for (Axis& each : changed) {

@@ -16,6 +16,7 @@ void FinCoefficients::read(sim::ParamReader& in) {
   for (int i = 0; i < 3; ++i) in.read(keys[i], force[i], sim::between(-1e6, 1e6), meanings[i]);
   for (int i = 0; i < 3; ++i) in.read(keys[i + 3], moment[i], sim::between(-1e6, 1e6), meanings[i + 3]);
   if (frame == sim::AxesFrame::flu) return;
+  // From forward-right-down to forward-left-up: y and z change their signs.
   force = {force.x(), -force.y(), -force.z()};
   moment = {moment.x(), -moment.y(), -moment.z()};
 }

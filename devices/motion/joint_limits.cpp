@@ -92,6 +92,7 @@ int JointLimitTable::limit(std::span<double> positions) const {
   constexpr double rounding_rad = 1e-9;
   int beyond = 0;
   for (std::size_t joint = 0; joint < positions.size() && !tables_.empty(); ++joint) {
+    // Limited joints already count at their new positions, in the order of the servos.
     const Range range = range_of(joint, positions);
     double& position = positions[joint];
     if ((range.low && position < *range.low - rounding_rad) || (range.high && position > *range.high + rounding_rad))

@@ -63,6 +63,7 @@ Odometry::Odometry(const Params& params, const sim::DeviceContext& context)
 void Odometry::measure(const sim::SenseContext& context) {
   const sim::Pose X_0V = X_W0_.inverse() * context.vehicle.X_WV();
   const double yaw = sim::yaw_of(X_0V.linear());
+  // The angle counts full turns, as a sum of wheel ticks does.
   truth_theta_rad_ += sim::wrap_angle(yaw - truth_theta_rad_);
   const sim::Matrix3d R_VW = context.vehicle.X_WV().linear().transpose();
   reading_.x_m = X_0V.translation().x();

@@ -81,6 +81,7 @@ void Led::show() {
   for (std::size_t i = 0; has_power_ && i < sources_.size(); ++i)
     for (const std::size_t shown : sources_[i].shown)
       for (std::size_t channel = 0; channel < 3; ++channel)
+        // Light adds up linearly; sRGB values do not.
         light[shown][channel] += static_cast<float>(intensities_[i]) * sources_[i].color[channel];
   for (std::size_t i = 0; i < shown_.size(); ++i) {
     for (std::size_t channel = 0; channel < 3; ++channel)

@@ -79,6 +79,7 @@ void Lbl::disturb(double dt_s, sim::Random& random) {
       range.travel_time_s = range.range_m = no_answer;
       continue;
     }
+    // Time passes once for all answers of a ping: slow errors advance at the first, and stay for the others.
     time_noise_.apply(range.travel_time_s, since_ping_s_, random);
     since_ping_s_ = 0;
     range.travel_time_s = std::max(range.travel_time_s, 0.0);

@@ -100,6 +100,7 @@ void Usbl::disturb(double dt_s, sim::Random& random) {
   since_fix_s_ += dt_s;
   for (Fix& fix : fixes_) {
     fix.range_m = fix.travel_time_s / 2 * assumed_mps_;
+    // Time passes once for all answers of a ping: slow errors advance at the first, and stay for the others.
     range_noise_.apply(fix.range_m, since_fix_s_, random);
     disturb_direction(fix, random);
     fix.range_m = std::max(fix.range_m, 0.0);
