@@ -160,6 +160,7 @@ std::set<std::string> sockets_on_port(int port) {
 bool holds_socket(const std::string& pid, const std::set<std::string>& inodes) {
   const std::string folder = "/proc/" + pid + "/fd";
   DIR* directory = opendir(folder.c_str());
+  // Processes of other users cannot be read; their sockets stay without an owner.
   if (directory == nullptr) return false;
   bool found = false;
   while (const dirent* entry = readdir(directory)) {

@@ -129,6 +129,7 @@ std::unique_ptr<OutgoingQueue::Entry> OutgoingQueue::free_entry() {
       return entry;
     }
   }
+  // Allocated outside of the lock.
   return std::make_unique<Entry>();
 }
 

@@ -106,6 +106,7 @@ void Session::call(ServiceCall call) {
     made.text = std::move(argument.text);
     made.call = {call.service, call.call, call.encoding, ""};
     made.client = link_.number();
+    // The answer comes later, from the thread that simulates.
     if (!protocol_.add_request(std::move(made))) refuse("too many requests of this client are waiting");
   } catch (const WebError& error) {
     refuse(error.what());

@@ -59,6 +59,7 @@ void LockstepService::watch_gates() {
   const bool any_receives = std::any_of(lockstep_.members().begin(), lockstep_.members().end(),
                                         [](const auto& entry) { return !entry.second.terms.receives.empty(); });
   for (std::size_t i = 0; i < links_.size(); ++i) {
+    // A watch costs a call for each message, so it is only set while some client must have all messages.
     if (!any_receives)
       links_[i]->gate.set_watch({});
     else

@@ -308,6 +308,7 @@ void LockstepClient::start_tick(shoal::sim_tick_t tick, const shoal::sim_due_t& 
 void LockstepClient::take_request(std::span<const std::byte> payload) {
   const auto question = try_decode<shoal::sim_resend_t>(payload);
   if (!question || question->of_client == 0 || question->client != name_ || question->session != session_) return;
+  // An open outbox belongs to the next tick; its messages are not listed yet.
   if (question->sequence != sequence_ || outbox_.is_open()) return;
   shoal::sim_resent_t head{};
   head.utime = tick_.utime;
@@ -328,6 +329,7 @@ void LockstepClient::take_bundle(std::span<const std::byte> payload) {
 
 void LockstepClient::request_when_due() {
   const auto now = Clock::now();
+  // Messages may be late rather than lost: asking at once would load a network that is busy already.
   if (now < incomplete_->ask_at) return;
   incomplete_->ask_at = now + incomplete_->interval;
   incomplete_->interval = next_resend_interval(incomplete_->interval);
@@ -435,6 +437,7 @@ void LockstepClient::leave(const std::string& reason) {
 void LockstepClient::leave_at_next_tick(const std::string& reason, milliseconds timeout) {
   if (!joined_) return;
   const auto deadline = Clock::now() + timeout;
+  // The request to leave is valid at a tick, so the world must not wait for this one.
   acknowledge(tick_);
   const bool is_awaited = await_tick(deadline);
   if (!is_last_tick()) {

@@ -99,6 +99,7 @@ std::size_t EventLogReader::fill(std::size_t size) {
   buffer_start_ = at_;
   buffered_ = there;
   if (buffer_.size() < size + read_bytes) buffer_.resize(size + read_bytes);
+  // read() may return less than was asked for, and is interrupted by signals.
   while (buffered_ < size) {
     const ssize_t got = ::pread(file_.number(), buffer_.data() + buffered_, buffer_.size() - buffered_,
                                 static_cast<off_t>(buffer_start_ + buffered_));

@@ -190,6 +190,7 @@ void McapWriter::put_message_indexes(RecordBuilder& out, ChunkIndex& index) {
     }
     out.end();
   }
+  // The indexes follow their chunk, whose length was all that had been put out.
   index.index_bytes = out_.size() - index.length;
 }
 
@@ -268,6 +269,7 @@ void McapWriter::put_chunk_indexes(RecordBuilder& out) const {
     out.number(index.time.last_ns);
     out.number(index.offset);
     out.number(index.length);
+    // Each entry has a number of 2 and an offset of 8 bytes.
     out.number(static_cast<std::uint32_t>(index.index_offsets.size() * 10));
     for (const auto& [channel, offset] : index.index_offsets) {
       out.number(channel);

@@ -34,6 +34,7 @@ class Transcoder {
     for (const shoal::Dimension& dimension : member.dimensions)
       count *= static_cast<std::size_t>(
           dimension.is_variable() ? lengths[static_cast<std::size_t>(dimension.length_slot)] : dimension.constant);
+    // An LCM array of variable size is a CDR sequence, which begins with its count; a fixed one has none in either.
     if (member.is_variable()) out_.put_count(count);
     if (member.type == WireType::compound) {
       for (std::size_t i = 0; i < count; ++i)

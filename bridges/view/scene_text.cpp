@@ -133,6 +133,7 @@ Json SceneWriter::bodies() {
   };
   for (const auto& vehicle : world_.vehicles()) add(*vehicle, vehicle->config(), vehicle->name(), "vehicle");
   for (const auto& [name, object] : world_.objects()) add(object, *object.config, name, "object");
+  // By number, as in sim.bodies, so that pages can merge both lists.
   std::sort(all.begin(), all.end(), [](const Json& a, const Json& b) { return a["id"] < b["id"]; });
   return all;
 }

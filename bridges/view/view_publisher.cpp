@@ -227,6 +227,7 @@ void ViewPublisher::fill_in_bodies(shoal::sim_bodies_t& bodies) const {
     const sim::Quaterniond q(X_WB.linear());
     bodies.body[i] = movables_[i].number;
     copy(X_WB.translation(), bodies.position_m[i].data());
+    // Single precision turns a body by less than a pixel, and halves the message.
     bodies.orientation[i] = {static_cast<float>(q.w()), static_cast<float>(q.x()), static_cast<float>(q.y()),
                              static_cast<float>(q.z())};
   }

@@ -66,6 +66,7 @@ HttpSite::HttpSite(AccessRules rules, const std::string& page_directory)
 }
 
 HttpAnswer HttpSite::answer(const HttpRequest& request) {
+  // First of all: a page of another site could reach this server by DNS rebinding, with its own name as the host.
   if (!has_allowed_host(request, rules_)) return wrong_host(request);
   if (request.method != "GET" && request.method != "HEAD") {
     HttpAnswer refused = plain_answer(405, "only GET and HEAD\n");
