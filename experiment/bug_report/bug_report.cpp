@@ -131,8 +131,8 @@ class BugPacker {
     for (const auto& [name, what] : texts) {
       const std::string path = directory_ + "/" + name;
       std::error_code error;
-      if (!fs::exists(fs::symlink_status(path, error)))
-        left_out(std::string(name) + ": the run did not write it");
+      if (!fs::exists(fs::symlink_status(path, error))) left_out(std::string(name) + ": the run did not write it");
+      // A link or a pipe could lead anywhere, and the archive is sent to others.
       else if (!is_plain(path))
         left_out(std::string(name) + ": is not a plain file");
       else if (size_of(path) > max_text_bytes)
@@ -155,6 +155,7 @@ class BugPacker {
       }
       const std::uintmax_t size = size_of(log);
       std::ifstream in(log, std::ios::binary);
+      // The end of an output tells why a program failed.
       if (size > max_log_bytes) in.seekg(static_cast<std::streamoff>(size - max_log_bytes));
       const std::string text{std::istreambuf_iterator<char>(in), {}};
       if (size > max_log_bytes) left_out(fmt::format("{}: truncated to its last {}", name, size_text(max_log_bytes)));
@@ -212,6 +213,7 @@ class BugPacker {
     tail.max_bytes = static_cast<std::uint64_t>(options_.max_MB) << 20;
     tail.snapshots = directory_ + "/snapshots";
     tail_ = write_record_tail(record, tail_file, tail);
+    // A record of another run would mislead whoever reads the report.
     if (run_ && (tail_->info.world != run_->world || tail_->info.seed != run_->seed))
       throw std::runtime_error(
           fmt::format("{}: is of world '{}' with seed {}, but the run in {} is of '{}' with seed {}", record,

@@ -211,6 +211,8 @@ void check_planned(const Manifest& manifest, const PlannedStudy& planned, const 
   for (const std::size_t i : which) {
     const StudyRun& run = planned.runs[i];
     const ManifestRun line = manifest.run(run.index);
+    // The inputs are hashes of the world and its settings: a result under the number of a changed run would be wrong
+    // without a sign of it.
     const bool same = line.in_case == config.cases[run.in_case].name && line.seed == run.seed &&
                       line.point == (config.factors.empty() ? 0 : run.point + 1) &&
                       line.inputs == inputs_of(planned.study, run);

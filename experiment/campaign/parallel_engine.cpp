@@ -39,6 +39,7 @@ std::vector<std::vector<std::size_t>> chunks_of(const std::vector<std::size_t>& 
 }
 
 std::vector<std::string> chunk_command(const EngineOptions& options) {
+  // The command runs on other machines and in other folders, so all paths are absolute.
   std::vector<std::string> command{own_program(), "study", "run", fs::absolute(options.study.output).string(),
                                    "--quiet"};
   if (options.study.run_timeout_s > 0) {

@@ -42,6 +42,7 @@ TunedPoint Tuning::point_of(int generation, std::size_t point, const std::vector
   }
   if (tuned.failed > 0) tuned.judgement = Judgement::failed;
   if (passed == tuned.runs) tuned.judgement = Judgement::passed;
+  // A statistic over some of the seeds would compare points by different runs.
   const bool all = std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
   tuned.value = all ? statistics_of(values).by_word(options_.statistic) : no_figure;
   return tuned;

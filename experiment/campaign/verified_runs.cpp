@@ -52,6 +52,7 @@ std::string outcome_of(const StudyRun& run, const StudyRow* row, bool& equal) {
   for (std::size_t i = 0; i < std::min(max_shown, verified.differences.size()); ++i)
     text += "  " + verified.differences[i] + "\n";
   if (verified.differences.size() > max_shown) text += "  ...\n";
+  // Last bits may differ between builds and machines, which is then said.
   return text + other_kind(run, *row);
 }
 

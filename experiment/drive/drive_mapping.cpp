@@ -184,6 +184,7 @@ void DriveMapping::find_thrust(const DrivenVehicle& vehicle) {
     } else if (takes(device, "thrust_rudder_command_t")) {
       targets_.push_back({Form::thrust_rudder, device.channel});
     }
+  // A drive that takes thrust and rudder goes first; else the profile knows how to mix thrusters and fins.
   if (!targets_.empty()) return;
   for (const DriveProfile::Craft& craft : profile_.crafts)
     if (add_craft(craft, vehicle)) return;

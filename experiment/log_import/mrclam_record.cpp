@@ -77,6 +77,7 @@ MrclamData::Pose pose_in(const std::vector<MrclamData::Pose>& truth, double time
 class ImportedRun {
  public:
   ImportedRun(const MrclamData& data, const std::string& log, bool overwrite)
+      // The record is written by the same parts as that of a run, so that every command reads it.
       : data_(data),
         start_s_(start_of_data(data)),
         loaded_(load(mrclam_world(data), log)),

@@ -211,10 +211,12 @@ int BoundMetric::index_of(const std::string& name) const {
 }
 
 void BoundMetric::move(bool scores) {
+  // Several messages of a step share its motion.
   if (moved_step_ == world_.step_number()) return;
   moved_step_ = world_.step_number();
   std::vector<TeamBound::Pose> poses;
   for (Member& member : members_) {
+    // A vehicle that was removed stays where it was last.
     if (const sim::Vehicle* vehicle = world_.find_vehicle(member.name)) {
       const sim::Pose X_WV = vehicle->X_WV();
       member.pose = {X_WV.translation(), sim::yaw_of(X_WV.linear())};

@@ -71,6 +71,7 @@ class DeliveryMetric final : public Metric {
     const LinkCounts counts = any_link_counts(world_, params_.vehicle, params_.device);
     std::int64_t all_lost = 0;
     for (const auto& [cause, count] : counts.lost) all_lost += count;
+    // A packet to all counts once for each receiver, so the ratio is of receptions, not of packets.
     const auto meant = static_cast<double>(counts.received + all_lost);
     add(figures, "sent", static_cast<double>(counts.sent));
     add(figures, "bytes_sent", static_cast<double>(counts.bytes_sent));

@@ -62,6 +62,7 @@ class MapMetric final : public Metric {
 
   void after_step() override {
     const double now_s = sim::to_seconds(world_.now());
+    // Changes between two maps are only seen if the true map is taken more often than maps come.
     if (history_.started() && now_s >= next_truth_s_ && now_s <= params_.until_s) look(now_s);
     while (const auto message = mailbox_->take()) {
       try {
@@ -84,6 +85,7 @@ class MapMetric final : public Metric {
     add(figures, "false_free_percent", mean(false_free_sum_, false_free_count_));
     add(figures, "unknown_percent", share(last_.unknown, last_.observable));
     add(figures, "stale_percent", mean(stale_sum_, stale_count_));
+    // A map without stale cells has none that are old, which is 0 and not unknown.
     add(figures, "stale_age_s", stale_cells_ > 0 ? stale_age_sum_s_ / stale_cells_ : maps_ > 0 ? 0 : no_figure);
     add(figures, "maps", maps_);
   }

@@ -45,6 +45,7 @@ class StabilityMetric final : public Metric {
     if (vehicle == nullptr || sim::to_seconds(world_.now()) < params_.from_s) return;
     ++steps_;
     const auto support = support_of(world_, *vehicle);
+    // In the air, or on one or two contacts, there is no support, and no margin at present.
     now_ = {no_figure, no_figure, no_figure};
     if (!support) return;
     ++carried_;

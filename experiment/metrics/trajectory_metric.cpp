@@ -119,6 +119,7 @@ class TrajectoryMetric final : public Metric {
         segments_ > 0 ? sim::radians_to_degrees(std::sqrt(segment_squares_rad2_ / segments_)) : no_figure);
     add(figures, "segments", segments_);
     const double end_s = std::min(sim::to_seconds(world_.now()), params_.until_s);
+    // A vehicle that is lost at the end is lost until then.
     const double lost_s = lost_since_s_ ? end_s - *lost_since_s_ : 0;
     add(figures, "lost_s", any ? std::max(max_lost_s_, lost_s) : no_figure);
     add(figures, "poses", sums_.count);

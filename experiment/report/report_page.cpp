@@ -166,6 +166,7 @@ std::string rules_html(const std::vector<RunRecord::Rule>& rules) {
   }
   std::string html;
   if (!failed.empty()) html += "<ul class=\"rules\">\n" + failed + "</ul>\n";
+  // Rules that hold are folded: failed ones are what a reader looks for.
   if (!held.empty())
     html += html_details(count == 1 ? "The rule that holds" : fmt::format("The {} rules that hold", count),
                          "<ul class=\"rules\">\n" + held + "</ul>\n");

@@ -53,6 +53,7 @@ class ChartWriter {
     ChartAxis x_axis(chart.log_x), y_axis;
     for (const ChartCurve& curve : chart.curves)
       for (const ChartPoint& point : curve.points) {
+        // A figure without a value at some point leaves a gap in its curve.
         if (!std::isfinite(point.mean)) continue;
         x_axis.add(point.x);
         for (const double value : {point.mean, point.low, point.high}) y_axis.add(value);

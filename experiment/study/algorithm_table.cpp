@@ -133,11 +133,13 @@ AlgorithmPair pair_of(const World& world, const std::string& label, const std::s
   std::vector<double> logarithms;
   for (const StudyRun* run : world.runs) {
     const double log = std::log(figure_of(*run, label + ".rms_m") / figure_of(*run, base + ".rms_m"));
+    // Runs of two algorithms that agree to rounding are ties for the test of ranks.
     if (std::isfinite(log)) logarithms.push_back(std::abs(log) < equal_log ? 0 : log);
   }
   pair.pairs = logarithms.size();
   if (logarithms.empty()) return pair;
   const PairedComparison compared = compare_pairs(std::move(logarithms));
+  // Ratios are averaged by their logarithms: twice as good and half as good cancel.
   pair.factor = std::exp(compared.mean);
   pair.factor_95 = {std::exp(compared.mean_95.low), std::exp(compared.mean_95.high)};
   pair.wilcoxon_p = compared.wilcoxon_p;

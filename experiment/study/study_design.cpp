@@ -40,6 +40,7 @@ std::vector<std::vector<double>> latin_shares(const StudyDesign& design, std::si
   std::vector<std::size_t> order(points);
   for (std::size_t k = 0; k < dimensions; ++k) {
     std::iota(order.begin(), order.end(), std::size_t{0});
+    // A random order for each factor (Fisher-Yates), so that each of its parts has one point.
     for (std::size_t i = points; i > 1; --i)
       std::swap(order[i - 1], order[random.integer_below(static_cast<std::uint32_t>(i))]);
     for (std::size_t i = 0; i < points; ++i)

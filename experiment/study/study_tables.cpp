@@ -133,6 +133,7 @@ void add_convergence(nlohmann::ordered_json& json, const StudyResults& results) 
 std::vector<ExtremeRun> extreme_runs(const StudyResults& results) {
   std::vector<ExtremeRun> extremes;
   for (const std::string& figure : results.table_figures()) {
+    // Its extremes are 0 and 1.
     if (figure == passed_figure) continue;
     const StudyRun *min_run = nullptr, *max_run = nullptr;
     for (const StudyRun& run : results.runs()) {
@@ -141,6 +142,7 @@ std::vector<ExtremeRun> extreme_runs(const StudyResults& results) {
       if (min_run == nullptr || value < figure_of(*min_run, figure)) min_run = &run;
       if (max_run == nullptr || value > figure_of(*max_run, figure)) max_run = &run;
     }
+    // A figure that is the same in all runs has no extreme.
     if (min_run == nullptr || figure_of(*min_run, figure) == figure_of(*max_run, figure)) continue;
     extremes.push_back({figure, true, max_run});
     extremes.push_back({figure, false, min_run});

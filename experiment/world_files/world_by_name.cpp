@@ -74,6 +74,7 @@ std::string advice(const std::string& name, const std::string& meant, const std:
   }
   const std::string name = sim::shortened(sim::printable(given));
   const std::string stem = fs::path(given).stem().string();
+  // The ending is added only to a name without one.
   const std::string file = fs::path(given).has_extension() ? "" : ", nor '" + name + ending + "'";
   sim::throw_config_error({}, "'" + name + "'",
                           "there is no such file here" + file + ", nor a shipped " + what + " of this name; " +

@@ -40,6 +40,7 @@ TeamBound::Pose between(const TeamBound::Pose& from, const TeamBound::Pose& to, 
 
 TeamBound::TeamBound(std::vector<VehicleErrors> team, int scored, const Options& options)
     : team_(std::move(team)), scored_(scored), options_(options), fixed_at_(team_.size(), sim::Time{0}) {
+  // One joint state of the team: sharing measurements correlates the errors of its members.
   std::vector<double> variances;
   for (const VehicleErrors& errors : team_)
     layouts_.push_back(make_layout(errors, static_cast<int>(variances.size()), variances));
@@ -392,6 +393,7 @@ void TeamBound::visit_state(sim::StateArchive& archive) {
 }
 
 void TeamBound::check_restored(const sim::StateArchive& archive) const {
+  // A snapshot may be of another build, or damaged: its indices are used without further checks.
   if (covariance_.size() != base_size_ + static_cast<Eigen::Index>(pending_.size()))
     archive.fail("errors of another team");
   if (fixed_at_.size() != team_.size()) archive.fail("fixes of another team");

@@ -86,6 +86,7 @@ sim::Matrix3d covariance_of(const LineReader& reader, const std::vector<Word>& w
   const auto number = [&](const char* name) {
     return reader.number_of(words[columns.at(name)], -max_covariance_m2, max_covariance_m2, name);
   };
+  // Without a z column its variance is 1, and only the block of x and y is used.
   sim::Matrix3d P = sim::Matrix3d::Identity();
   P(0, 0) = number("xx");
   P(1, 1) = number("yy");
