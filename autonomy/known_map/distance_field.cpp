@@ -45,6 +45,7 @@ GridFrame frame_of(const shoal::occupancy_grid_t& map) {
   constexpr double max_cells = 16e6, farthest_m = 1e7;
   const double cells = static_cast<double>(map.width) * map.height;
   if (map.width < 1 || map.height < 1 || cells > max_cells || cells != map.ncells)
+    // The map comes from another program; the limits bound memory and time.
     throw shoal::MessageError(
         fmt::format("'ncells' must be width * height, above 0 and at most {:g}, got {} of {} x {}", max_cells,
                     map.ncells, map.width, map.height));

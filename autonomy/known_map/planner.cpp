@@ -108,6 +108,7 @@ PlanGrid Planner::grid() const {
       const std::size_t cell = grid.frame.index(column, row);
       const int percent = seen_ ? seen_->percent(column, row, now_s) : OccupancyMap::unknown_percent;
       const bool is_seen = percent >= occupied_percent || (percent >= 0 && percent <= free_percent);
+      // What the lidar has seen counts before the map, which may be old.
       occupied[cell] = (is_seen ? percent >= occupied_percent : map_->cells[cell] == 1) ? 1 : 0;
       grid.unknown[cell] = !is_seen && map_->cells[cell] < 0 ? 1 : 0;
     }
@@ -169,6 +170,7 @@ Planner::Decision Planner::plan(std::int64_t utime, const Vector2d& p_W, const P
   is_due_ = false;
   tried_utime_ = utime;
   if (path.points_W.empty()) {
+    // The same failure is reported once, not at every retry.
     if (no_path_since_ && path.why_none == why_none_) return {};
     if (!no_path_since_) no_path_since_ = utime;
     why_none_ = path.why_none;

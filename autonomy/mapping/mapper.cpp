@@ -195,9 +195,11 @@ void Mapper::survey(const Beams& beams) {
 bool Mapper::close_loop(std::size_t other) {
   constexpr double gate_m = 0.4, loop_gate_m = 1, farthest_rad = 0.3;
   const std::size_t last = surveyed_.size() - 1;
+  // After a loop the drift is larger than between neighboring scans.
   const double max_m = other + recent_scans > last ? gate_m : loop_gate_m;
   const Pose2 guess = seen_from(graph_.poses()[other], graph_.poses()[last]);
   const auto aligned = align(*surveyed_[other].outline, *surveyed_[last].outline, guess, max_m);
+  // A match far from the guess is more likely a similar wall than a large drift.
   if (!aligned) return false;
   const Pose2 off = seen_from(guess, aligned->pose);
   if (off.p_W.norm() > max_m || std::abs(off.yaw_rad) > farthest_rad) return false;

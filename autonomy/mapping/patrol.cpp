@@ -83,6 +83,7 @@ Twist Patrol::to_waypoint(std::int64_t utime) {
     const bool reached = follower_->reached() > reached_;
     passed_ = follower_->reached() + follower_->given_up();
     reached_ = follower_->reached();
+    // A waypoint that was given up needs no rest.
     if (!reached) return {};
     const bool charges = follower_->current() == 1 % params_.waypoints_W.size();
     rounds_ += charges && reached_ > 1 ? 1 : 0;

@@ -77,6 +77,7 @@ Fit fit_of(const OccupancyMap& map, const Beams& beams, const Pose2& pose, doubl
       ++near;
     else if (map.is_known(end_W))
       ++contradicting;
+    // Enough beams fit: the rest cannot change the decision.
     if (near >= enough_near * all) break;
   }
   return {near / all, contradicting / all, through / all};
@@ -95,6 +96,7 @@ void PlaceSearch::sort(std::size_t max) {
   std::vector<Candidate> kept;
   for (const Candidate& each : candidates_) {
     if (kept.size() == max) break;
+    // Matches from neighboring starting points end in one place, which is one candidate.
     const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Candidate& other) {
       return (other.pose.p_W - each.pose.p_W).norm() < same_m &&
              std::abs(sim::wrap_angle(other.pose.yaw_rad - each.pose.yaw_rad)) < same_rad;

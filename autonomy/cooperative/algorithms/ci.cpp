@@ -66,6 +66,7 @@ class CovarianceIntersection final : public OwnFilterEstimator<CovarianceInterse
     const Matrix2 B = row.J * other->P * row.J.transpose();
     if (!filter_.within_gate(row, B)) return;
     const double trace = filter_.covariance(own).trace();
+    // As for ranges, with a measurement of two components.
     const Minimum best = minimum_between(0.01, 0.999, [&](double w) {
       const Eigen::MatrixXd DH = inflated(row.H.transpose(), w), PDH = filter_.P() * DH;
       const Matrix2 S = DH.transpose() * PDH + B / (1 - w) + row.R;

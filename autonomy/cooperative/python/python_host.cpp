@@ -137,6 +137,7 @@ void PythonHost::send(const nlohmann::json& request) {
   for (std::size_t done = 0; done < line.size();) {
     const ssize_t written = write(to_child_.number(), line.data() + done, line.size() - done);
     if (written < 0 && errno == EINTR) continue;
+    // The pipe is full while the child computes; the time limit holds for writing, too.
     if (written < 0 && errno == EAGAIN) {
       wait_for(to_child_, POLLOUT, request);
       continue;
