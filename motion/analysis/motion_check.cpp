@@ -104,6 +104,7 @@ void check_track(const sim::MotionTrack& frames, const Limits& limits, double fr
     high.add(at_s, value, limits.high, value - limits.high);
     if (i == 0) continue;
     const double per_s = (value - frames.keys[i - 1].value) / frame_s;
+    // Rounding of set points must not break a limit.
     velocity.add(at_s, per_s, limits.velocity, std::abs(per_s) - limits.velocity * (1 + 1e-6));
     const double per_s2 = (per_s - velocity_before) / frame_s;
     acceleration.add(at_s, per_s2, limits.acceleration, std::abs(per_s2) - limits.acceleration * (1 + 1e-6));

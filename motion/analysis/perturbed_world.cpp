@@ -129,6 +129,7 @@ sim::WorldConfig world_for_walks(const sim::WorldConfig& world) {
   sim::WorldConfig reduced = world;
   for (sim::VehicleInstance& instance : reduced.vehicles) {
     sim::VehicleConfig vehicle = *instance.config;
+    // Sensors cost most of a step, and no motion depends on them.
     std::erase_if(vehicle.devices, [](const sim::DeviceConfig& device) {
       return params_of<devices::JointServo::Params>(device) == nullptr &&
              params_of<devices::JointGroup::Params>(device) == nullptr &&

@@ -71,6 +71,7 @@ const JointNameList* JointNames::find_list(const std::string& list) const {
 
 std::optional<std::string> JointNames::foreign_name(const std::string& list, bool uses_aliases,
                                                     const std::string& joint) const {
+  // Without a vehicle names stay as they are.
   if (empty()) return joint;
   const NamedJoint* const found = find(joint);
   if (found == nullptr) {

@@ -132,6 +132,7 @@ class SkillWriter {
                         sim::number_text(motion_.end_s()) + " s");
     skill_.period = static_cast<int>(rows);
     skill_.first_joint = first_of_gait;
+    // At equal shares of the cycle, so that the loop closes although rows have a fixed duration.
     for (double k = 0; k < rows; ++k) skill_.rows.push_back(row_of(values_at(k * motion_.end_s() / rows)));
     std::vector<std::string> left_out;
     for (std::size_t j = 0; j < slots_.size(); ++j)

@@ -82,6 +82,7 @@ class TableBuilder {
 
   PoseTable build() {
     choose_joints();
+    // A table has the start and the end in any case, and between them all times at which a joint has a key.
     times_.add(0);
     times_.add(motion_.end_s());
     for (const sim::MotionTrack* track : tracks_)

@@ -78,6 +78,7 @@ std::string write_ros(const sim::JointMotion& motion, const JointNames& names, c
     text += (j > 0 ? ", " : "") + yaml_word(table.joints[j].foreign);
   text += "]\npoints:\n";
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    // In whole nanoseconds first, so that sec and nanosec agree.
     const auto time_ns = std::llround(table.times_s[i] * billion);
     text += "- {positions: [";
     for (std::size_t j = 0; j < table.rows[i].size(); ++j) text += (j > 0 ? ", " : "") + yaml_double(table.rows[i][j]);

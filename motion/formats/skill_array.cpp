@@ -113,6 +113,7 @@ class ArrayReader {
            !std::isspace(static_cast<unsigned char>(line[end])))
       ++end;
     const experiment::Word word{line.substr(i, std::max(end - i, std::size_t{1})), static_cast<int>(i) + 1};
+    // Values of the array are int8_t in C.
     const auto value = static_cast<int>(lines_.whole_of(word, -128, 127, "a number of a skill"));
     std::vector<Number>& numbers = lists_.back().numbers;
     if (numbers.size() == max_numbers) lines_.fail(word, "a skill must have at most 128 rows");

@@ -102,7 +102,9 @@ class TekkotsuReader {
     if (words.size() != 2) lines_.fail(words[0].column, "must have a command and a file");
     const std::string name(words[1].text);
     if (!source_.read_other) lines_.fail(words[1], "other files cannot be loaded here");
+    // A file that loads itself would not end.
     if (depth_ >= max_depth) lines_.fail(words[1], "files must load each other at most 4 deep");
+    // A motion may come from someone else: it reads no file outside of its folder.
     if (name.starts_with('/') || name.find("..") != std::string::npos)
       lines_.fail(words[1], "the file must be in the folder of this one");
     std::string bytes;

@@ -11,6 +11,8 @@ std::vector<double> with_limited_steps(const std::vector<double>& values, double
   const std::size_t n = values.size();
   std::vector<double> limited;
   for (std::size_t i = 0; i < n; ++i) {
+    // The smallest function above and the largest below the values with bounded steps. Their mean has bounded steps,
+    // too, and no lag.
     double above = values[i], below = values[i];
     for (std::size_t j = 0; j < n; ++j) {
       const std::size_t apart = i > j ? i - j : j - i;

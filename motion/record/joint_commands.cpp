@@ -86,6 +86,7 @@ bool JointCommands::wish_of(const std::string& name) {
   else if (name == "'")
     wishes_.push_back(RecordWish::push);
   else if (name == "tab")
+    // Hands may leave the keys for any reason: one key stops all joints.
     release_all();
   else if (name == "=" || name == "+")
     speed_ = std::min(max_speed, speed_ * speed_notch);

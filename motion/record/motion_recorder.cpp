@@ -244,6 +244,7 @@ void MotionRecorder::add_frame(std::span<const double> velocities) {
   }
   if (records) set_points_->limit(armed_);
   ++frames_;
+  // Written before it is played, so that a crash of the world loses no frame.
   journal_->frame(recorded_values());
   const auto kept = static_cast<std::int64_t>((options_.back_s + more_than_back_s) / frame_s_);
   stage_->player().set_frame(frames_, armed_, recorded_values(), kept);

@@ -129,6 +129,7 @@ class TakeParser {
     if (take_.frame_count() >= max_take_frames(take_.frames.size()))
       fail("must have at most " + std::to_string(max_take_frames(take_.frames.size())) + " frames");
     const bool is_first = take_.frame_count() == 0;
+    // A line holds only what changed.
     for (std::vector<double>& values : take_.frames) values.push_back(is_first ? std::nan("") : values.back());
     while (!rest.empty()) {
       rest.remove_prefix(1);
