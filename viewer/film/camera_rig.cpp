@@ -247,6 +247,7 @@ std::unique_ptr<CameraRig> make_camera_rig(const std::string& text, const sim::W
   const bool named = colon != std::string::npos;
   if (text == "all") return std::make_unique<FramingRig>(world, like, std::nullopt, "");
   if (kind == "top") {
+    // The name is checked now, not after minutes of rendering.
     if (named) vehicle_of(world, text, name);
     return std::make_unique<FramingRig>(world, like, sim::Vector3d::UnitZ(), name);
   }

@@ -114,6 +114,7 @@ void EncoderProgram::add(const sim::Image8& frame) {
     const ssize_t written = write(input_.number(), at, left);
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) {
+      // The encoder has ended: its own message says why.
       input_ = bridges::FileDescriptor();
       fail(wait());
     }

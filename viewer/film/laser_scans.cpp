@@ -58,6 +58,7 @@ std::vector<LaserScans::Ray> rays_of(const devices::Lidar3d& lidar, const PoseAt
 
 sim::Pose LaserScans::pose_at(const Poses& X_WS, sim::Time at) {
   const auto after = std::find_if(X_WS.begin(), X_WS.end(), [at](const auto& each) { return each.first >= at; });
+  // Before the first and after the last known pose the nearest one is the best guess.
   if (after == X_WS.begin()) return after->second;
   const auto before = std::prev(after);
   if (after == X_WS.end()) return before->second;

@@ -64,6 +64,7 @@ class FieldDecoder {
     if (member.length_slot >= 0)
       lengths[static_cast<std::size_t>(member.length_slot)] = shoal::read_integer(member.type, at_);
     const bool is_number = member.type != WireType::compound && member.type != WireType::string;
+    // Long arrays go into the binary part: as JSON they would take several times the bytes and time.
     if (is_number && !sizes.empty() && count > longest_in_header) return put_array(member.type, sizes, count);
     return decode_elements(member, sizes, 0);
   }

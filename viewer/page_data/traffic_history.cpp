@@ -104,6 +104,7 @@ std::int64_t TrafficHistory::last_us() const {
 TrafficCounts TrafficHistory::restore(std::size_t marks) const {
   TrafficCounts counts;
   for (const auto& [name, values] : channels_)
+    // What had not appeared at this mark must not be listed with zeros.
     if (const std::int64_t count = get(values.count, marks); count > 0)
       counts.channels_[name] = {values.fingerprint, count, get(values.bytes, marks)};
   for (const auto& [names, values] : sent_)

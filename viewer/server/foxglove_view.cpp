@@ -49,11 +49,13 @@ bool FoxgloveView::take_subscribed() {
 }
 
 void FoxgloveView::serve(const std::function<State()>& state, const std::function<Answer(const Request&)>& execute) {
+  // A client that floods the run with requests must not stop the simulation.
   constexpr int max_at_once = 50;
   for (int i = 0; i < max_at_once; ++i) {
     const auto request = protocol_->take_request();
     if (!request) break;
     auto [ok, text] = execute(*request);
+    // The state first, so that the client sees its effect before the reply.
     protocol_->set_state(state());
     protocol_->reply(*request, ok, std::move(text));
   }

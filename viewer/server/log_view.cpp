@@ -242,6 +242,7 @@ void LogView::send_status() {
   status_is_old_ = false;
   since_status_s_ = 0;
   const bool at_end = now_us_ >= static_cast<double>(index_.end_us());
+  // A log that is at its end stands still, whatever was chosen.
   server_.retain("status", json_text({{"op", "status"},
                                       {"time_us", static_cast<std::int64_t>(now_us_)},
                                       {"step", nullptr},

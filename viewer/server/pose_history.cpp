@@ -17,8 +17,10 @@ void PoseHistory::start_branch(std::int32_t number, std::int64_t start_us, std::
   Track track{{number, std::nullopt, start_us, start_us}, {}};
   if (before != tracks_.end()) {
     before->second.branch.end_us = left_us;
+    // Only a branch that continues the present one has its past.
     if (continues) track.branch.parent = present_;
   }
+  // Starting anew is better than growing without limit, or refusing to branch.
   if (tracks_.size() >= max_branches) {
     clear();
     track.branch.parent.reset();

@@ -148,6 +148,7 @@ void RunView::send_status(const sim::World& world, const sim::RunControl& contro
 void RunView::handle(const bridges::ViewRequest& request, const Execute& execute) {
   if (request.op == "look") return past_.answer(request);
   const Json message = Json::parse(request.text, nullptr, false);
+  // Unknown requests are ignored: a page of a newer version may send more.
   if (request.op != "control" || !message.is_object()) return;
   Json reply{{"op", "reply"}, {"id", message.value("id", Json())}};
   try {

@@ -69,6 +69,7 @@ void ViewMessages::take(std::string_view channel, std::span<const std::byte> pay
       take_estimate(channel, payload);
     }
   } catch (const std::exception&) {
+    // A message of any program may be malformed; the view only counts it.
     ++bad_messages_;
   }
 }
