@@ -131,8 +131,9 @@ class BugPacker {
     for (const auto& [name, what] : texts) {
       const std::string path = directory_ + "/" + name;
       std::error_code error;
-      if (!fs::exists(fs::symlink_status(path, error))) left_out(std::string(name) + ": the run did not write it");
       // A link or a pipe could lead anywhere, and the archive is sent to others.
+      if (!fs::exists(fs::symlink_status(path, error)))
+        left_out(std::string(name) + ": the run did not write it");
       else if (!is_plain(path))
         left_out(std::string(name) + ": is not a plain file");
       else if (size_of(path) > max_text_bytes)
