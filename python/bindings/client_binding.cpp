@@ -32,6 +32,8 @@ class StopBySignal {
     shoal::Client* none = nullptr;
     if (!client_.compare_exchange_strong(none, &client)) return;
     struct sigaction own {};
+    // Python's own handler is only replaced if there is one: a program that ignores Ctrl-C, or ends at once, has
+    // chosen so.
     if (sigaction(SIGINT, nullptr, &before_) != 0 || before_.sa_handler == SIG_IGN || before_.sa_handler == SIG_DFL) {
       client_ = nullptr;
       return;

@@ -345,6 +345,7 @@ class Encoder {
       PyErr_Clear();
       refuse(path_, "an integer from " + std::to_string(low) + " to " + std::to_string(high), value);
     };
+    // Only true integers: a float would be cut off silently.
     if (!PyIndex_Check(value.ptr())) wrong();
     const py::object index = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
     if (!index) wrong();
@@ -356,6 +357,7 @@ class Encoder {
 
   void text(const py::handle& value) {
     if (!PyUnicode_Check(value.ptr())) refuse(path_, "a str", value);
+    // Bytes that are no UTF-8 came in by the same escape, so a message can be passed on unchanged.
     const py::object bytes =
         py::reinterpret_steal<py::object>(PyUnicode_AsEncodedString(value.ptr(), "utf-8", "surrogateescape"));
     if (!bytes) {

@@ -60,6 +60,7 @@ std::int64_t InProcessWorld::step(std::int64_t count, const Stop& stop) {
       fault_ = fault.what();
       throw;
     }
+    // The clock is read at every 16th step only: steps of a small world take microseconds.
     if (!stop || (taken & 15) != 15 || Clock::now() < next_check) continue;
     if (stop()) return taken + 1;
     next_check = Clock::now() + interval;
@@ -122,6 +123,7 @@ const WorldChannels& InProcessWorld::channels() {
 
 void InProcessWorld::require_readable(const std::string& channel) {
   const WorldChannels& all = channels();
+  // A channel that anything publishes, or may publish, can be read even before its first message.
   if (all.published.contains(channel) || all.received.contains(channel) || known_.contains(channel) ||
       subscribed_.contains(channel) || bus_.find(channel) != nullptr)
     return;

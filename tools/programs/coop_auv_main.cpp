@@ -137,6 +137,7 @@ int run(int argc, char** argv) {
   auv.use_ranges = !options.no_cooperation;
   auv.steer_by_dead_reckoning = options.steer == "dead_reckoning";
   auv.filter.heading_bias_std_rad = sim::degrees_to_radians(options.heading_bias_std_deg);
+  // Clock errors become errors of all ranges: 1 ms is 1.5 m.
   auv.filter.range_bias_std_m = auv.sound_speed_mps * 1e-3 * options.clock_std_ms;
   auv.filter.range_drift_std_mps = auv.sound_speed_mps * 1e-6 * options.clock_drift_std_ppm;
   auv.access = options.marine.access();

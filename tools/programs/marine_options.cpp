@@ -51,6 +51,7 @@ void MarineOptions::declare(command_line::DeclaredOptions& options) {
 }
 
 std::unique_ptr<HelmBehavior> MarineOptions::make(const std::string& name) const {
+  // The parser allows only one of these.
   if (!circle_m.empty()) return make_circle({circle_m[0], circle_m[1]}, circle_m[2], speed_mps);
   if (!zigzag_m.empty())
     return make_zigzag({zigzag_m[0], zigzag_m[1]}, {zigzag_m[2], zigzag_m[3]}, zigzag_m[4], zigzag_legs.value_or(1),

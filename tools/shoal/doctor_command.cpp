@@ -27,6 +27,7 @@ int examine(const std::string& url) {
   for (const bridges::Finding& finding : bridges::check_network(url)) {
     std::cout << word(finding.verdict) << finding.name << ": " << finding.text << '\n';
     usable = usable && finding.verdict != bridges::Finding::Verdict::bad;
+    // Several findings may have the same remedy.
     for (const std::string& each : finding.commands)
       if (std::find(commands.begin(), commands.end(), each) == commands.end()) commands.push_back(each);
   }

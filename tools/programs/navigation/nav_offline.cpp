@@ -112,6 +112,7 @@ void check_record(const OfflineOptions& options, const NavRecord& record) {
 
 int navigate(const OfflineOptions& options) {
   check_options(options);
+  // The record tells whether its team is on land: there are no frames of an acoustic modem then.
   if (const auto land = read_land_record(options.log)) {
     check_record(options, land->run);
     const NavOptions of_all = options_of(options, {}, frame_bytes_of(options, land->run));

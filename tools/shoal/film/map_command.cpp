@@ -121,6 +121,7 @@ int map(const MapArguments& arguments) {
     throw CLI::ValidationError("--out", "must end in .png, got '" + arguments.out + "'");
   if (arguments.every_s && arguments.until_s < arguments.at_s)
     throw CLI::ValidationError("--until", "must not be before --at");
+  // Checked before the run, which may take minutes.
   check_writable(numbered(arguments, 0));
   if (!arguments.channel.empty() && !viewer::is_event_log(arguments.source))
     throw std::runtime_error(arguments.source + ": --channel needs a log of shoal run --record");

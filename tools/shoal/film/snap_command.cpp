@@ -91,6 +91,7 @@ SnapView free_view(const SnapArguments& arguments, const sim::World& world) {
     return view;
   }
   const sim::Vector3d eye_W = parse_point("--eye", arguments.eye), look_W = parse_point("--look", arguments.look);
+  // The direction would be undefined.
   if ((look_W - eye_W).norm() < 1e-6) throw CLI::ValidationError("--look", "must not be the point of --eye");
   view.scene.X_WS = viewer::look_at(eye_W, look_W);
   return view;
@@ -119,6 +120,7 @@ SnapView make_view(const SnapArguments& arguments, const sim::World& world) {
                                                                      : sim::ImageKind::color;
   }
   if (arguments.antialias) view.antialias = *arguments.antialias;
+  // Averages of depths or labels mean nothing.
   if (view.options.kind != sim::ImageKind::color) view.antialias = 1;
   if (view.options.kind != sim::ImageKind::color && arguments.overlay.shapes != viewer::BodyShapes::drawn)
     throw CLI::ValidationError("--shapes", "must be drawn for an image without color");

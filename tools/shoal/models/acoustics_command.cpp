@@ -62,6 +62,7 @@ std::vector<double> parse_ranges(const std::string& text) {
                                "got '" +
                                    text + "'");
   std::vector<double> ranges_m;
+  // By multiplication, since sums of the step would miss the end by rounding.
   for (int i = 0; (*numbers)[0] + i * (*numbers)[2] <= (*numbers)[1] * (1 + 1e-12); ++i)
     ranges_m.push_back((*numbers)[0] + i * (*numbers)[2]);
   return ranges_m;

@@ -127,6 +127,7 @@ int look(MediumArguments& arguments) {
   const sim::Vector3d p_W = parse_point(arguments.at);
   arguments.load.encode_message = shoal::encode_own_message;
   const sim::WorldConfig config = sim::load_world(experiment::world_file(arguments.world), arguments.load).config;
+  // Without physics: the medium alone takes no time to build, even of a large world.
   sim::Medium medium(config.medium, config.physics.gravity_mps2, static_cast<std::uint64_t>(config.run.seed));
   medium.advance_to(sim::from_seconds(arguments.time_s));
   if (arguments.waves_s)

@@ -19,6 +19,7 @@ sim::JointMotion motion_of(const std::string& path) {
   try {
     return sim::load_motion(path);
   } catch (const sim::ConfigError& error) {
+    // Files of other programs are given by mistake; a hint helps more than the errors of a YAML parser.
     const motion::MotionFormat* const format = motion::motion_format_of_file(path, "");
     if (format == nullptr || format->read == nullptr) throw;
     std::vector<std::string> lines = error.lines();

@@ -63,6 +63,7 @@ void print_joints(const motion::MotionDifference& difference) {
   std::cout << fmt::format("{:<24} {:>10} {:>9} {:>10} {:>10}\n", "joint", "max deg", "at s", "rms deg", "first s");
   int equal = 0;
   for (const motion::JointDifference& joint : difference.joints) {
+    // Equal joints are only counted.
     if (joint.max == 0) {
       ++equal;
       continue;

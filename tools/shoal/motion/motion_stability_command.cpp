@@ -170,6 +170,7 @@ int stability(StabilityArguments arguments) {
   for (const std::string& file : arguments.files) {
     motions.push_back(motion_of(file));
     const bool has_frames = !motions.back().frames.empty();
+    // Frames are too many for a row each, and without keys there are no times.
     if ((motions.back().keys.empty() || has_frames) && arguments.every_s <= 0)
       throw command_line::UsageError(file + ": the motion has " + (has_frames ? "frames" : "no keys") +
                                      ": give the times with --every");

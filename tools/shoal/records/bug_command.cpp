@@ -15,6 +15,7 @@ namespace {
 
 int pack(const experiment::BugOptions& options) {
   try {
+    // Checked first: packing a long record takes minutes.
     if (!options.out.empty()) check_writable(options.out);
     const experiment::BugReport report = experiment::write_bug_report(options);
     std::cout << report.path << '\n';

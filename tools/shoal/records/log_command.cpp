@@ -99,6 +99,7 @@ std::string csv_value(const shoal::FieldValue& value) {
     for (const std::byte b : *bytes) hex += fmt::format("{:02x}", static_cast<unsigned>(b));
     return hex;
   }
+  // Texts are always quoted, as commas and quotes may be part of them (RFC 4180).
   std::string quoted = "\"";
   for (const char c : std::get<std::string_view>(value)) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + "\"";

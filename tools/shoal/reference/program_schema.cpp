@@ -81,6 +81,7 @@ std::vector<sim::ProgramDeclaration> shipped_declarations() {
 }
 
 nlohmann::ordered_json args_schema(const sim::ProgramDeclaration& declaration) {
+  // A program without arguments may have an empty `args:`, which is null in YAML.
   Json schema{{"type", {"object", "null"}}, {"properties", Json::object()}, {"additionalProperties", false}};
   for (const sim::ArgDeclaration& arg : declaration.args) {
     std::string meaning = arg.meaning;
