@@ -44,7 +44,7 @@ class MarineEkf {
     double speed_scale_walk = 1e-5;
     double range_bias_walk_m = 0.01;
     double range_drift_walk_mps = 1e-5;
-    /// With two states the biases are modeled as noise that changes at this interval.
+    /// In a filter of two states the biases are modeled as noise that changes at this interval.
     double bias_as_noise_s = 60;
 
     double range_gate = 10.83;     ///< squared innovation over its variance: 99.9 % of chi-square with 1 degree

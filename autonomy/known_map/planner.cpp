@@ -24,7 +24,7 @@ void Planner::receive(const shoal::occupancy_grid_t& map) {
   const int side = std::max(1, static_cast<int>(std::lround(params_.cell_m / fine.cell_m)));
   CoarseMap coarse{{fine.origin_W, side * fine.cell_m, (fine.columns + side - 1) / side, (fine.rows + side - 1) / side},
                    {}};
-  // Of the cells in one: occupied before unknown before free.
+  // The worst of the cells merged into one wins: occupied before unknown before free.
   coarse.cells.assign(coarse.frame.size(), 0);
   for (int row = 0; row < fine.rows; ++row)
     for (int column = 0; column < fine.columns; ++column) {

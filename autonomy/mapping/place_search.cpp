@@ -30,7 +30,7 @@ struct CoarseField {
   std::size_t index(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
   }
-  /// Of the square with this cell; 0 outside of the map.
+  /// Value of the square with this cell; 0 outside of the map.
   int at(int column, int row) const {
     const int c = column / side, r = row / side;
     if (column < 0 || row < 0 || c >= columns || r >= rows) return 0;

@@ -11,7 +11,7 @@ namespace bridges::foxglove {
 namespace {
 
 constexpr std::string_view control_is_off = "control is off: start Shoal with --foxglove-control";
-/// What a message costs besides its payload.
+/// Overhead of a message besides its payload.
 constexpr std::size_t message_bytes = 100;
 
 }  // namespace

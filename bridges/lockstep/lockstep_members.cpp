@@ -194,7 +194,7 @@ bool LockstepService::leave(int link, const shoal::sim_control_request_t& reques
   // Accept messages that it sent before it left and that arrive later.  It does not answer later ticks.
   const bool answered = member->answered || (terms.acknowledged >= 0 && terms.acknowledged < member->sequence);
   const bool complete = link_of(member->link).messages.is_complete(member->name);
-  // It may leave because a request was not answered in time: that waits no longer.
+  // The client may leave because a request was not answered in time; that request is dropped.
   if (terms.session != 0 && !(answered && complete)) return false;
   // Remove the client.
   report_who_left(*member, link, terms);

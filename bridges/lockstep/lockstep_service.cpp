@@ -233,7 +233,7 @@ void LockstepService::serve(const std::vector<std::string>& late) {
     const auto [entry, fresh] = pending_.try_emplace(client);
     Pending& requested = entry->second;
     if (fresh) requested = {now, now, now, now, first_resend_interval, false, false};
-    // Its time-out starts when its request has been carried out.
+    // The time-out of the client starts when its request has been carried out.
     constexpr int max_extensions = 100;
     const bool awaits_turn = requests_.has(client);
     const bool awaits_others = awaits_turn && std::any_of(late.begin(), late.end(), [this](const std::string& each) {

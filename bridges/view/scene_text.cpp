@@ -205,7 +205,7 @@ Json SceneWriter::water() const {
   const double level_m = medium.still_surface_m();
   Json profile = Json::array();
   for (const double depth_m : {0., 1., 2., 5., 10., 20., 30., 50., 75., 100., 150., 200., 300., 500., 1000.}) {
-    // Of the water, also where it is below a trough of the waves.
+    // Velocity of the water, even where it is below a trough of the waves.
     const double c = 1 / medium.mean_slowness_spm(level_m - depth_m, level_m - depth_m);
     if (std::isfinite(c)) profile.push_back({level_m - depth_m, c});
   }

@@ -101,7 +101,7 @@ void ViewPublisher::sound_arrived(const sim::SoundArrived& arrived) {
   copy(arrived.p_W, message->position_m);
   message->duration_us = (arrived.ended - arrived.started).count();
   message->travel_time_s = arrived.travel_time_s;
-  // Of a signal that did not arrive the ratio is minus infinity, which a message cannot have.
+  // The ratio of a signal that did not arrive is minus infinity, which a message cannot have.
   message->snr_dB = std::isfinite(arrived.snr_dB) ? arrived.snr_dB : -1000;
   message->outcome = arrived.loss == sim::SignalLoss::none ? "received" : sim::signal_loss_word(arrived.loss);
 }

@@ -57,7 +57,7 @@ class Peer {
 
 class WebSocketPeer;
 
-/// What all connections share.
+/// State shared by all connections.
 struct Hub {
   HttpSite& site;
   std::size_t max_clients;
@@ -249,7 +249,7 @@ void WebSocketPeer::close(WebClose code, std::string reason) {
   wake();
 }
 
-/// What was said before, such as why a run has ended, is still sent.
+/// Messages queued before, such as why a run has ended, are still sent.
 void WebSocketPeer::leave() {
   if (session_) return close(WebClose::going_away, "the server ends");
   begin_close({websocket::close_code::going_away, "the server ends"});
@@ -493,7 +493,7 @@ void WebListener::Impl::end() {
   for (Peer* peer : std::vector<Peer*>(hub.peers.begin(), hub.peers.end())) peer->leave();
   if (hub.peers.empty()) return;
 
-  // Who does not say goodbye is cut off
+  // Clients that do not close are cut off
   hub.farewell.expires_after(farewell_time);
   hub.farewell.async_wait([this](error_code) {
     for (Peer* peer : std::vector<Peer*>(hub.peers.begin(), hub.peers.end())) peer->cut();

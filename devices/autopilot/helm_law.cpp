@@ -57,7 +57,7 @@ void HelmLaw::hold_station_ahead(const CraftMotion& motion, const Eigen::Vector2
   // Velocity through the water: towards the station, and against the drift.
   const Eigen::Vector2d desired = at_most(k * error, gains.rate_max) - drift_mps_;
   if (desired.norm() < idle_mps) return;
-  // Head along it; advance only as far as the heading is aligned.
+  // Head along it; advance only in proportion to the alignment of the heading.
   demand.heading_rad = std::atan2(desired.y(), desired.x());
   const double turn = sim::wrap_angle(demand.heading_rad - sim::yaw_of(motion.X_WS.linear()));
   demand.speed_mps = desired.norm() * std::max(0.0, std::cos(turn));

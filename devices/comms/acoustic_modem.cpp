@@ -194,7 +194,7 @@ double AcousticModem::power_W() const {
   return transducer_.busy_until() > world_.now() ? params_.transmit_power_W : 0;
 }
 
-/// It is not idle while it transmits, because of the power that this takes.
+/// A modem is not idle while it transmits, because of the power that this takes.
 bool AcousticModem::idle() const {
   return queue_.empty() && arrived_.empty() && received_.empty() && !serial_ &&
          transducer_.busy_until() <= world_.now();

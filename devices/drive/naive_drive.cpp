@@ -91,7 +91,7 @@ double NaiveDrive::desired_turn(double speed_share) const {
   if (std::isnan(heading_target_rad_))
     return rudder_ * params_.max_turn_rate_radps * std::clamp(speed_share, -1.0, 1.0);
   const double error = sim::wrap_angle(heading_target_rad_ - yaw_rad_);
-  // At most the rate that reaches the heading in one step.
+  // No faster than the rate that reaches the heading in one step.
   const double gain = std::min(params_.heading_gain_per_s, 1 / step_s_);
   return std::clamp(gain * error, -max, max);
 }

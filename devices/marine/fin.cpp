@@ -101,8 +101,8 @@ void Fin::lift_locally(const WaterFlow& flow, double angle_rad, double scale, do
 
 void Fin::lift_by_speed_of_body(const WaterFlow& flow, double angle_rad, double scale, double step_s) {
   const sim::Vector3d v_D = mount_.in_D(flow, flow.body.v_WB_W - flow.water_W);
-  // As published for motion ahead.  Astern the flow comes from behind, and the force is reversed; it changes in
-  // proportion while the flow is more from the side than along.
+  // Coefficients are published for motion ahead.  Astern the flow comes from behind, and the force is reversed; it
+  // changes in proportion while the flow is more from the side than along.
   const double ahead = v_D.x() == 0 ? 0 : std::clamp(v_D.x() / std::abs(v_D.y()), -1.0, 1.0);
   const double square = (v_D.x() * v_D.x() + v_D.y() * v_D.y()) * ahead;
   const double upper = mount_.max_force_N(std::sqrt(std::abs(square)), step_s);

@@ -73,7 +73,7 @@ void Tuning::run(const std::function<void(int generation)>& after) {
     std::iota(all.begin(), all.end(), std::size_t{0});
     run_study(study_, options_.study, runs, all, progress);
     if (caught_signal() != 0) return;
-    // Their values.
+    // Values of these points.
     std::vector<TunedPoint> points;
     for (std::size_t point = first; point < study_.points.size(); ++point)
       points.push_back(point_of(generation, point, runs));

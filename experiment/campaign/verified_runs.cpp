@@ -143,7 +143,7 @@ VerifiedTable compare_with_table(const LoadedStudy& study, const std::vector<Stu
     if (fields.size() != columns.size())
       throw std::runtime_error(
           fmt::format("{}:{}: must have {} fields, got {}", name, line, columns.size(), fields.size()));
-    // With factors the name of a world is followed by the values of its point.
+    // In a study with factors the name of a world is followed by the values of its point.
     if (!cases.empty() && std::none_of(cases.begin(), cases.end(), [&world = fields[0]](const std::string& each) {
           return world == each || world.starts_with(each + " (");
         }))

@@ -50,7 +50,7 @@ class BoundMetric final : public Metric {
   /// Measurements of the team that count, besides fixes and dead reckoning.
   enum class Scope {
     team,      ///< those of all vehicles
-    received,  ///< the packets that the vehicle received, its sightings, and those by USBL of it
+    received,  ///< the packets that the vehicle received, and the relative positions of and to it
     alone,     ///< none
   };
   struct Params final : sim::MetricParams {
@@ -80,7 +80,7 @@ class BoundMetric final : public Metric {
   static std::vector<std::string> names_of(const Params& params, const sim::WorldConfig& world);
   static std::vector<VehicleErrors> errors_of_team(const std::vector<std::string>& names, const sim::World& world);
   TeamBound make_bound(const Params& params) const;
-  /// Returns whether ranges and sightings of a vehicle count.
+  /// Returns whether ranges and relative positions measured by a vehicle count.
   bool counts(int observer) const {
     return params_.of == Scope::team || (params_.of == Scope::received && observer == scored_);
   }

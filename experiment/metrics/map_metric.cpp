@@ -142,7 +142,7 @@ class MapMetric final : public Metric {
     }
     next_truth_s_ = std::min(next_truth_s_, now_s);
     look(now_s);
-    // What a map of a later day has wrong may have changed days before.
+    // An error in a map of a later day may date from a change days before.
     if (now_s < params_.from_s) return;
     add_score(score_map(published.map, history_, params_.tolerance_cells, now_s));
   }

@@ -55,7 +55,7 @@ std::vector<ShippedFile> named_files(ShippedKind kind) {
   return files;
 }
 
-/// What to do about a name of which there is no file of the right kind.
+/// Advice for a name without a file of the right kind.
 std::string advice(const std::string& name, const std::string& meant, const std::string& lists) {
   for (const ShippedKind kind : {ShippedKind::world, ShippedKind::vehicle, ShippedKind::study})
     for (const ShippedFile& file : named_files(kind))

@@ -23,7 +23,7 @@ namespace {
 constexpr double max_play_s = 120;
 constexpr double min_connection_s = 0.5;
 constexpr double slower_factor = 3;
-/// It stands still when it moves less than this in `still_s`.
+/// A vehicle stands still when it moves less than this in `still_s`.
 constexpr double still_s = 0.2, still_m = 0.005, still_rad = 2 * std::numbers::pi / 180;
 /// Range of the search: room of the pose on the route beyond the ends, and shares of the straight connection's time.
 constexpr double via_room = 0.4, least_time_share = 0.25, greatest_time_share = 4;

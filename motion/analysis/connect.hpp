@@ -76,9 +76,9 @@ struct Connection {
 
 /// Search for a motion from one pose to another, without a fall in the world as it is and in perturbed ones.
 ///
-/// In this order: straight from pose to pose; the same slower; by the stance at the start of the run; and a search by
-/// CMA-ES for a pose on the route and the times before and after it.  The first motion that arrives in all worlds is
-/// the result.  It does not depend on the number of threads.
+/// Tries, in this order: straight from pose to pose; the same slower; by the stance at the start of the run; and a
+/// search by CMA-ES for a pose on the route and the times before and after it.  The first motion that arrives in all
+/// worlds is the result.  It does not depend on the number of threads.
 class Connector {
  public:
   /// `start`: motion at whose end the connection starts; it may be a pose, held.  Throws ConfigError when the vehicle
@@ -104,7 +104,7 @@ class Connector {
   std::vector<std::size_t> left_out_;
   std::vector<std::string> start_joints_;
   sim::ThreadPool pool_;
-  // Of the present search.
+  // State of the present search.
   sim::JointValues from_, to_;  ///< with the same joints
   bool may_touch_ = false;
   int played_ = 0;

@@ -235,7 +235,7 @@ JointMotion trimmed(const JointMotion& motion, double from_s, double to_s) {
   check_part(motion, from_s, to_s);
   JointMotion left =
       with_tracks(motion, part(motion, from_s, to_s), [=](double t_s) { return t_s <= to_s ? t_s - from_s : -1; });
-  // What changed before the part is so at its start.
+  // Changes before the part take effect at its start.
   std::erase_if(left.changes, [=](const sim::MotionChange& change) { return change.at_s > to_s; });
   for (sim::MotionChange& change : left.changes) change.at_s = std::max(0.0, change.at_s - from_s);
   move_sounds(left, [=](double at_s) { return at_s >= from_s && at_s <= to_s ? at_s - from_s : -1; });
@@ -254,7 +254,7 @@ JointMotion without(const JointMotion& motion, double from_s, double to_s) {
   JointMotion left = with_tracks(motion, std::move(tracks), [=](double t_s) {
     return t_s < from_s ? t_s : t_s >= to_s ? t_s - to_s + from_s : -1;
   });
-  // What happened in the part that was cut out stays: the world would else be another one afterwards.
+  // What happened in the part that was cut out stays: otherwise the world would be a different one afterwards.
   for (sim::MotionChange& change : left.changes)
     change.at_s = change.at_s < to_s ? std::min(change.at_s, from_s) : change.at_s - to_s + from_s;
   move_sounds(left, [=](double at_s) { return at_s < from_s ? at_s : at_s < to_s ? -1 : at_s - to_s + from_s; });

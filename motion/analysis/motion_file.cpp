@@ -230,7 +230,7 @@ std::string MotionHistory::move(const std::string& from, const std::string& to) 
 sim::JointMotion MotionHistory::previous() const {
   const std::vector<Version> found = versions(folder(), "undo");
   if (found.empty()) throw std::runtime_error("'" + path_ + "' has no earlier version");
-  // It names its frames as they are named beside the file.
+  // The motion names its frames as they are named beside the file.
   const experiment::ScratchDirectory scratch;
   const fs::path file = scratch.path / fs::path(path_).filename();
   copy_over(found.back().file, file);

@@ -12,7 +12,7 @@
 
 namespace motion {
 
-/// What a file does not keep of a motion, or a motion of a file: one sentence each.
+/// Losses of a conversion between a motion and a file: one sentence each.
 using Losses = std::vector<std::string>;
 
 enum class SkillKind { posture, gait, behavior };
@@ -59,7 +59,7 @@ struct MotionFormat {
   /// Returns the motion; its angles are in rad.  Throws sim::ConfigError with line and column, or the offset of the
   /// byte.  Null: not possible.
   sim::JointMotion (*read)(const MotionSource& source, Losses& losses);
-  /// As `write`, for a format of several files in a folder.
+  /// Like `write`, for a format of several files in a folder.
   std::vector<ExportedFile> (*write_folder)(const sim::JointMotion& motion, const JointNames& names,
                                             const FormatOptions& options, Losses& losses) = nullptr;
 };

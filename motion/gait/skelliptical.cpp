@@ -151,7 +151,7 @@ LegPosture Skelliptical::posture_at(std::span<const double> values, const GaitSt
                         (1 - forward) * of_leg(values, front, front_turn_lift, rear_turn_lift);
   const double up_m =
       stroke.height * lift_m - stroke.thrust * values[thrust] - values[canter] * std::cos(2 * pi * phase);
-  // From the hip, level, then in the vehicle frame, whose nose is down.
+  // Relative to the hip and level, then in the vehicle frame, whose nose is down.
   const double level_x_m = x_m + forward_m;
   const double level_z_m = up_m - (front ? front_height_m : values[rear_body_height]);
   const double c = std::cos(tilt_rad), s = std::sin(tilt_rad);

@@ -52,7 +52,7 @@ bool is_key_name(const std::string& name) {
 void take_event(const experiment::InputEvent& event, JointCommands& commands) {
   switch (event.type) {
     case experiment::InputEvent::report:
-      // What is held is unknown.
+      // Which keys are held is unknown.
       if (event.code == experiment::InputEvent::report_dropped) commands.release_all();
       break;
     case experiment::InputEvent::button:

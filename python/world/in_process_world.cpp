@@ -75,7 +75,7 @@ void InProcessWorld::publish(const std::string& channel, std::span<const std::by
       shoal::embedded_types().find(static_cast<std::uint64_t>(shoal::fingerprint(payload)));
   if (schema == nullptr) throw shoal::MessageError("no message type has the fingerprint of this payload");
   if (const auto error = shoal::validate(*schema, payload, shoal::Finite::any)) throw shoal::MessageError(*error);
-  // What the device accepts
+  // Message types that the device accepts
   const auto reader = channels().received.find(channel);
   if (reader != channels().received.end() && !reader->second.empty()) {
     if ((", " + reader->second + ",").find(", " + schema->name + ",") == std::string::npos)
@@ -187,7 +187,7 @@ void InProcessWorld::restore(std::span<const std::byte> snapshot) {
   bus_.clear();
   channels_.reset();
   fault_.clear();
-  // What the program has not read is of another future.
+  // Messages that the program has not read belong to a discarded future.
   for (const auto& each : mailboxes_)
     if (const auto mailbox = each.lock()) mailbox->set_unread({});
 }

@@ -22,11 +22,11 @@ namespace {
 
 thread_local SharedWork* measured_work = nullptr;
 
-/// What is known of a piece of shared work that this thread does.
+/// Piece of shared work that this thread does.
 struct Piece {
   tbb::task_arena* arena = nullptr;  // of its pool; null: none
   bool measured = false;
-  // Of the work within it that threads shared.
+  // Work within it that threads shared.
   double own_s = 0;        // CPU time of this thread
   double all_s = 0;        // of all threads
   double max_piece_s = 0;  // of the longest part

@@ -26,7 +26,7 @@ struct CtdRange {
 /// Limits of the values, as for the rows of a world.
 constexpr std::array<CtdRange, ctd_columns> ctd_limits{
     {{-5, 12000}, {-5, 12400}, {-5, 100}, {0, 400}, {100, 10000}, {1, 20000}}};
-/// What waters have, apart from vents and brine.
+/// Usual values of natural waters, apart from vents and brine.
 constexpr std::array<CtdRange, ctd_columns> ctd_usual{
     {{-5, 12000}, {-5, 12400}, {-5, 45}, {0, 45}, {1350, 1700}, {900, 1300}}};
 

@@ -102,7 +102,7 @@ void EmbreeScene::find_occluded(const RTCOccludedFunctionNArguments* arguments) 
       RTCRayN_tfar(arguments->ray, n, i) = -std::numeric_limits<float>::infinity();
 }
 
-/// What the rays of a bundle may hit: single shapes, and layers to search by their trees.
+/// Targets of the rays of a bundle: single shapes, and layers to search by their trees.
 struct EmbreeScene::Targets {
   Targets(const EmbreeScene& scene, const RayFilter& filter_, const RayBundle& bundle)
       : filter(filter_), planes(scene.planes_.shapes) {
@@ -113,14 +113,15 @@ struct EmbreeScene::Targets {
       if (!test || !add_shapes(layer->shapes, stops)) add_tree(*layer, bundle);
     }
   }
-  /// Of a bundle of a fan, whose targets were found before.
+  /// Targets of a bundle of a fan, which were found before.
   Targets(const FanTargets& fan, const RayBundle& bundle);
 
   RayFilter filter;
   std::span<const RayShape> planes;
   std::array<const RayShape*, 3 * max_few> shapes;
   int shape_count = 0;
-  /// In order of the cost of intersections: terrain is last, and is cheaper for rays that other hits have shortened.
+  /// Layers in order of the cost of intersections: terrain is last, and is cheaper for rays that other hits have
+  /// shortened.
   std::array<const Layer*, 3> trees;
   int tree_count = 0;
 
@@ -154,7 +155,7 @@ struct EmbreeScene::Targets {
   }
 };
 
-/// What the rays of a fan may hit: shapes at its height and within its range.
+/// Targets of the rays of a fan: shapes at its height and within its range.
 struct EmbreeScene::FanTargets {
   FanTargets(const EmbreeScene& scene, const RayFilter& filter_, const Fan& fan)
       : filter(filter_), planes(scene.planes_.shapes), layers{&scene.moving_, &scene.fixed_, &scene.terrain_} {

@@ -170,7 +170,7 @@ SHOAL_INLINE void transform_all_to(const RayShape& shape, const RayPacket& rays,
     }
 }
 
-/// As passes_by() for all lanes.
+/// Like passes_by(), for all lanes.
 SHOAL_INLINE unsigned near_lanes_of(const RayShape& shape, const RayPacket& rays) {
   double over_m2[RayPacket::size];
   const auto& c = shape.center;

@@ -45,7 +45,7 @@ void ActingVehicles::add(const Vehicle& vehicle) {
 }
 
 void ActingVehicles::remove(const Vehicle& vehicle) {
-  // From the end, since vehicles that come and go are the last ones.
+  // Search from the end: vehicles that come and go are the last ones.
   const auto found =
       std::find_if(vehicles_.rbegin(), vehicles_.rend(), [&](const Range& range) { return range.vehicle == &vehicle; });
   if (found == vehicles_.rend()) return;

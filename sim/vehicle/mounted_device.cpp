@@ -26,7 +26,7 @@ class MountedDevice::Outlet final : public Publisher {
     hold_ = hold;
   }
 
-  /// Also stores messages published from now on in `copies`; null: stops.
+  /// Stores messages published from now on in `copies` as well; null: stops.
   void copy_to(std::vector<Bytes>* copies) { copies_ = copies; }
 
   void publish(std::span<const std::byte> payload) override {

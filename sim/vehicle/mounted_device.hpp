@@ -111,7 +111,7 @@ class MountedDevice : public VisitedInSteps {
   };
   std::optional<Lack> lack() const;
   const Vehicle& vehicle() const { return vehicle_; }
-  /// For tests and tools.
+  /// Used by tests and tools.
   const Sensor* sensor() const { return sensor_; }
   const Actuator* actuator() const { return built_.actuator.get(); }
   void visit_state(StateArchive& archive);

@@ -12,7 +12,7 @@ namespace command_line {
 
 namespace {
 
-/// What the value of an argument is completed with.
+/// Completion of the value of an argument.
 struct Value {
   enum class Kind { none, files, folders, words, words_or_files };
   Kind kind = Kind::none;

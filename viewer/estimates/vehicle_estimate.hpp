@@ -11,7 +11,7 @@
 
 namespace viewer {
 
-/// Where a vehicle believes to be, by a message of one of its programs.
+/// Estimated pose of a vehicle, from a message of one of its programs.
 struct VehicleEstimate {
   std::int64_t utime = 0;  ///< at which it was valid, by the clock of the vehicle
   sim::Vector3d position_m = sim::Vector3d::Zero();

@@ -215,7 +215,7 @@ SceneView view_of_camera(const sim::World& world, const std::string& name) {
     if (camera == nullptr) continue;
     names.push_back(device->vehicle().name() + "." + device->config().name);
     if (name != names.back() && name != device->full_name()) continue;
-    // Its lens and pose.
+    // Lens and pose of the camera.
     const sim::DeviceConfig& config = device->config();
     const sim::Vehicle& vehicle = device->vehicle();
     const sim::Body& body = config.body.empty() ? vehicle.base() : vehicle.body(config.body);

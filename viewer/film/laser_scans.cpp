@@ -24,7 +24,7 @@ sim::Pose sensor_pose(const sim::MountedDevice& device) {
   return body.X_WB() * config.X_BS();
 }
 
-/// Returns the rays of a plane scan with a return; without one the range is the largest, or the least.
+/// Returns the rays of a plane scan with a return; without one the range is the largest or the smallest.
 std::vector<LaserScans::Ray> rays_of(const devices::Lidar& lidar, const sim::Pose& X_WS) {
   const sim::FieldOfView view = lidar.field_of_view().value();
   std::vector<LaserScans::Ray> rays;

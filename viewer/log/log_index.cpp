@@ -77,7 +77,7 @@ void LogIndex::mark_traffic(const Mark& mark, TrafficCounts& counts) {
 
 void LogIndex::add_hash(const Hash& hash) {
   while (!hashes_.empty() && hashes_.back().time_us > hash.time_us) hashes_.pop_back();
-  // At its end a run writes another one, after the last requests.
+  // A run writes another sim.info at its end, after the last requests.
   if (hashes_.empty() || hashes_.back().time_us < hash.time_us) hashes_.push_back(hash);
 }
 

@@ -131,7 +131,7 @@ class FieldDecoder {
 
 std::string message_frame(const shoal::MessageTypes& types, std::string_view channel,
                           std::span<const std::byte> payload, std::int64_t time_us) {
-  // Fields, as far as they can be read
+  // All fields that can be read
   const shoal::MessageSchema* schema = payload.size() < sizeof(std::uint64_t)
                                            ? nullptr
                                            : types.find(static_cast<std::uint64_t>(shoal::fingerprint(payload)));

@@ -21,7 +21,7 @@ std::shared_ptr<bridges::foxglove::Protocol> make_protocol(bridges::WebServer& s
       [&server](std::function<void()> work) { server.run_in_thread(std::move(work)); });
   if (server.needs_token_to_read())
     protocol->require_token([&server](std::string_view token) { return server.is_token(token); });
-  // Of a client that offers both, the newer name.
+  // If a client offers both, the newer name.
   for (const char* name : {"foxglove.sdk.v1", "foxglove.websocket.v1"}) server.add_protocol(name, protocol);
   return protocol;
 }

@@ -131,7 +131,7 @@ void LogView::seek(std::int64_t time_us) {
   time_us = std::clamp(time_us, index_.start_us(), index_.end_us());
   now_us_ = static_cast<double>(time_us);
   foxglove_.jump(index_.epoch_us() + std::max(index_.start_us(), time_us - before_us));
-  // What holds at this time, then what happened shortly before it.
+  // The state at this time, then the events shortly before it.
   send_event_at(index_.scene_at(time_us).offset);
   if (const auto scores = index_.scores_at(time_us)) send_event_at(scores->offset);
   messages_.rewind_paths(std::numeric_limits<std::int64_t>::min());

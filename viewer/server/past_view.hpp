@@ -31,7 +31,7 @@ class PastView {
   void set_scene(const std::string& scene);
   /// Keeps the present poses, when they are due.
   void remember(const sim::World& world, const bridges::ViewPublisher& publisher);
-  /// As PoseHistory::start_branch().
+  /// See PoseHistory::start_branch().
   void start_branch(std::int32_t number, std::int64_t start_us, std::int64_t left_us, bool continues);
   /// Says what the programs of the present branch do, for the list of branches; empty: nothing.
   void set_programs(const std::string& text);

@@ -75,7 +75,7 @@ void ViewMessages::take(std::string_view channel, std::span<const std::byte> pay
 }
 
 bool ViewMessages::take_named(std::string_view channel, std::span<const std::byte> payload) {
-  // What later pages need too.
+  // Pages that connect later need these messages too.
   if (channel == "sim.info") {
     epoch_us_ = shoal::decode<shoal::sim_info_t>(payload, shoal::Finite::required).epoch_utime;
   } else if (channel == "sim.scene") {
@@ -202,7 +202,7 @@ void ViewMessages::take_scores(std::span<const std::byte> payload) {
                                       {"rules", std::move(rules)}}));
 }
 
-/// Also without a page: paths are rare, and a page that comes later needs them.
+/// Kept even if no page is connected: paths are rare, and a page that connects later needs them.
 void ViewMessages::take_path(std::string_view channel, std::span<const std::byte> payload) {
   auto path = read_path(payload);
   if (!path) return;

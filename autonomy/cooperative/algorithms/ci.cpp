@@ -18,8 +18,8 @@ namespace {
 ///
 /// D is w^(-1/2) for the position and 1 for the errors of the own instruments (heading, speed, clock), which are in no
 /// data of others.  Inflated with each of many measurements, they would exceed what the instruments allow: a heading
-/// that nothing bounds turns the track.  w in (0, 1] gives the least trace of the position; w = 1 means no update.  A
-/// sender whose fixes by satellite replaced all that it said before is independent, and says so: the range is used
+/// that nothing bounds turns the track.  w in (0, 1] minimizes the trace of the position; w = 1 means no update.  A
+/// sender whose fixes by satellite replaced all that it sent before is independent, and says so: the range is used
 /// without inflation.
 class CovarianceIntersection final : public OwnFilterEstimator<CovarianceIntersection> {
  public:

@@ -65,7 +65,7 @@ class Trajectory {
   JointFilter end(const VectorXd& noise) const;
 
  private:
-  /// What a walk along the trajectory may return; the first rows of the Jacobian are those of the noise.
+  /// Optional results of a walk along the trajectory; the first rows of the Jacobian are those of the noise.
   struct Results {
     double* residuals = nullptr;
     MatrixXd* jacobian = nullptr;

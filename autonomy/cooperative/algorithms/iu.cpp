@@ -75,7 +75,7 @@ class InterleavedUpdate final : public EstimatorOf<InterleavedUpdate> {
     std::vector<std::pair<double, Set>> order;
     for (const auto& [set, filter] : bank_) order.emplace_back(trace(filter), set);
     std::sort(order.begin(), order.end());
-    // What it knows alone has nothing of the others.
+    // The filter without ranges contains no information of other vehicles.
     const bool is_independent = independence_.is_independent();
     if (is_independent) order = {{0, own_set()}};
     independence_.shared();

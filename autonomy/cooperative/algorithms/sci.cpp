@@ -17,8 +17,8 @@ namespace {
 ///     P1 = Pd / w + Pi,   P2 = Bd / (1 - w) + Bi,   K = P1 H' (H P1 H' + u' P2 u + R)^-1,   A = I - K H
 ///     P+ = A P1 A' + K (u' P2 u + R) K',   Pi+ = A Pi A' + K R K',   Pd+ = P+ - Pi+
 ///
-/// and w of the least trace.  What a vehicle measures by itself is independent until it says its position; from then on
-/// others may have it, and it belongs to Pd.  What came from a sender does, too: others received the same.
+/// and w minimizes the trace.  What a vehicle measures by itself is independent until it says its position; from then
+/// on others may have it, and it belongs to Pd.  What came from a sender does, too: others received the same.
 class SplitCovarianceIntersection final : public EstimatorOf<SplitCovarianceIntersection> {
  public:
   static constexpr const char* meaning = "split covariance intersection: own errors are known to be independent";

@@ -18,8 +18,8 @@ struct Algorithm {
   std::string meaning;
   std::function<std::unique_ptr<Estimator>()> make;
   std::function<std::unique_ptr<TeamEstimator>()> make_team;  ///< of a reference that runs from a record only
-  bool on_land = true;  ///< it says what it does with relative measurements of other vehicles
-  bool at_sea = true;   ///< it uses ranges by sound
+  bool on_land = true;                                        ///< it handles relative measurements of other vehicles
+  bool at_sea = true;                                         ///< it uses ranges by sound
   /// Returns the CPU time that a program of the algorithm has used outside of this process; may be empty.
   std::function<double()> outside_cpu_s = {};
 };

@@ -56,7 +56,7 @@ std::vector<Member> members_of(const std::vector<Vehicle>& vehicles) {
   return members;
 }
 
-/// What an estimator knows when it starts.
+/// Initial knowledge of an estimator.
 struct Setup {
   std::vector<Member> team;  ///< all vehicles that navigate together, in the order of the world file
   int own = 0;               ///< index of the own vehicle in `team`

@@ -106,7 +106,7 @@ PythonHost::~PythonHost() {
 
 void PythonHost::end() {
   { const bridges::FileDescriptor closed = std::move(to_child_); }  // the end of its input
-  // It closes its output at its end, unless the class never returns.
+  // The child closes its output when it ends, unless the class never returns.
   constexpr double timeout_s = 2;
   char rest[4096];
   while (!is_stuck_ && is_ready(from_child_.number(), POLLIN, std::min(timeout_s, limit_s_)) &&

@@ -189,7 +189,7 @@ void put_all(CdrWriter& out, std::int64_t utime, const std::vector<Marker>& mark
   for (const Marker& marker : markers) put_marker(out, utime, marker);
 }
 
-/// All that can be drawn, in place of what was before; meshes and terrains as far as their assets are known.
+/// All that can be drawn, in place of what was before; meshes and terrains only if their assets are known.
 bool write_scene(const shoal::sim_scene_t& message, ConverterContext& context, CdrWriter& out) {
   const Json scene = Json::parse(message.scene, nullptr, false);
   if (!scene.is_object()) return false;

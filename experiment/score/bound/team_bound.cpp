@@ -13,7 +13,7 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::Vector2d;
 
-/// Smallest variance of a fix or a sighting: a millimeter, so that the innovation never is singular.
+/// Smallest standard deviation of a fix or relative position, squared: 1 mm, so that the innovation is never singular.
 constexpr double min_variance_m2 = 1e-6;
 /// A vehicle that moves faster was placed elsewhere: it has not traveled the distance.
 constexpr double max_speed_mps = 200;

@@ -196,7 +196,7 @@ std::optional<int> find_vehicle(const DriveArguments& arguments, RemoteVehicle& 
     }
     if (std::string_view(request) == "bus") vehicle.set_bus(reply->text);
   }
-  // Its description comes on another channel.
+  // The description of the vehicle comes on another channel.
   for (const auto deadline = Clock::now() + 5s;
        !vehicle.description() && Clock::now() < deadline && experiment::caught_signal() == 0;) {
     vehicle.take();

@@ -36,7 +36,7 @@ struct SnapArguments {
   bool all = false;
   int quality = 90;
   std::string visibility, overlays = "none", shapes = "drawn";
-  // What the texts above give.
+  // Values parsed from the texts above.
   std::optional<double> visibility_m;
   viewer::OverlayChoice overlay;
 

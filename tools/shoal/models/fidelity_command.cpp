@@ -71,7 +71,7 @@ int fidelity(const FidelityArguments& arguments) {
     for (const std::string& missed : result.missed) std::cout << result.of.name << ": missed " << missed << '\n';
   if (!arguments.results.empty())
     verification::write_fidelity_report(arguments.results, file.text, results, arguments.csv);
-  // With a missed bar every change would seem to be seen.
+  // If a bound is missed already, every change would seem to be detected.
   if (passed && arguments.mutation) passed = mutate(arguments, file);
   return passed ? exit_ok : exit_failed;
 }

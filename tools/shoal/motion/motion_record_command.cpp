@@ -240,7 +240,7 @@ void add_motion_record_command(CLI::App& motion, int& exit_code) {
   command->add_option("--rate", arguments->rate, "simulated seconds per wall second; below 1: slow motion; default 1")
       ->type_name("R")
       ->check(number_from(0.01, 10));
-  // What is recorded.
+  // Options that select what is recorded.
   command_line::add_name_list(*command, "--overdub", arguments->overdub,
                               "joints that are recorded while the others play the file; comma separated")
       ->type_name("JOINTS");

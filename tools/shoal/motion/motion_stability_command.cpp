@@ -23,7 +23,7 @@ struct StabilityArguments {
   double every_s = 0, marginal_mps = 0.1, stable_mps = 0.4;
 };
 
-/// Class of a motion by the greatest impulse over mass that it withstands everywhere.
+/// Class of a motion by the largest impulse per mass that it withstands everywhere.
 const char* class_of(double withstood_mps, const StabilityArguments& arguments) {
   if (withstood_mps >= arguments.stable_mps) return "stable";
   return withstood_mps >= arguments.marginal_mps ? "marginal" : "unstable";
@@ -42,7 +42,7 @@ struct PlayedMotion {
   double start_s = 0;
   std::vector<double> instants_s;  ///< of the run, at which it is pushed: each key, or whole multiples of a period
 
-  /// Returns the least margins from a time of the run until another one.
+  /// Returns the smallest margins from a time of the run until another one.
   Margins min_margins(double from_s, double until_s) const {
     Margins min{from_s, none, none, none};
     for (const Margins& one : course)
@@ -70,7 +70,7 @@ PlayedMotion played_once(const StabilityArguments& arguments, const std::string&
     stage.go_to(stage.now_s() + sim::to_seconds(stage.world().step_time()));
   played.start_s = stage.time_of(0);
   const double rate = stage.player().rate();
-  // Of a motion that loops, the first round.
+  // The first round of a motion that loops.
   if (!stage.play_out(0, motion.loop ? played.start_s + motion.end_s() / rate : max_s) && !motion.loop)
     throw sim::ConfigError({fmt::format("{}: the motion has not ended after {:.0f} s of the run", file, max_s)});
   stage.after_step = {};
@@ -98,7 +98,7 @@ int print_table(const StabilityArguments& arguments, const sim::JointMotion& mot
     const double until_s = i + 1 < margins.size() ? margins[i + 1].at_s : margins[i].at_s + 0.008;
     const Margins min = played.min_margins(margins[i].at_s, until_s);
     least_Ns = std::min(least_Ns, margins[i].least_Ns());
-    // Where even the greatest push is withstood, no direction is the worst.
+    // Where even the largest push is withstood, no direction is the worst.
     const bool beyond = margins[i].least_Ns() >= margins[i].mass_kg * arguments.push.greatest_mps;
     const std::string push = fmt::format("{}{:.3f}", beyond ? ">" : "", margins[i].least_Ns());
     std::cout << fmt::format("{:>8.3f} {:>9.1f} {:>9.1f} {:>10.1f} {:>10} {:>10} {:>9.1f}\n",

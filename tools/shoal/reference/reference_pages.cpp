@@ -33,7 +33,7 @@ std::string traffic_of(const sim::DeviceType& type) {
   return text + "\n";
 }
 
-/// For lines of any length unless `columns` are given.
+/// Lines have any length unless `columns` are given.
 std::string message_text(const shoal::MessageSchema& schema, std::size_t columns = 100'000) {
   std::string text = fmt::format("{}  fingerprint {:016x}\n", schema.name, schema.fingerprint);
   std::string comment = schema.comment;  // it has its own lines

@@ -107,7 +107,7 @@ void UrdfElement::note_others(std::initializer_list<std::string_view> known, std
 }
 
 void UrdfElement::note_other_attributes(const std::string& of, std::vector<UrdfNote>& notes) const {
-  // Of elements that mean the same wherever they are.
+  // Elements that mean the same everywhere.
   static const std::map<std::string_view, std::set<std::string_view>> known_of = {
       {"origin", {"xyz", "rpy", "quat_xyzw"}},
       {"axis", {"xyz"}},
