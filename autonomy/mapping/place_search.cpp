@@ -169,7 +169,7 @@ std::optional<Pose2> PlaceSearch::look(const OccupancyMap& map, const ScanMatche
   ++views_;
   sort(params_.candidates);
   if (views_ < params_.min_views || candidates_.front().evidence < params_.min_mean * views_) return std::nullopt;
-  // The runner-up must be clearly worse: rooms that look alike are told apart only by moving on.
+  // The runner-up must be clearly worse: rooms that look alike can only be distinguished by moving on.
   if (candidates_.size() > 1 && candidates_[0].evidence < candidates_[1].evidence + params_.lead) return std::nullopt;
   return candidates_.front().pose;
 }

@@ -141,7 +141,7 @@ void LockstepService::take_messages() {
                [&](const sim::Message& question) { take_request(static_cast<int>(i), question); });
     take_up_to(max_at_once, *link.bundles,
                [&](const sim::Message& bundle) { take_bundle(static_cast<int>(i), bundle); });
-    // These mailboxes only make the gate admit the channel to the record; nobody reads them.
+    // These mailboxes only make the gate admit the channel to the record; no client reads them.
     for (const auto& [channel, mailbox] : link.passed_on)
       while (mailbox->take()) {
       }

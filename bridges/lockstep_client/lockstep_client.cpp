@@ -231,7 +231,7 @@ bool LockstepClient::handle_message() {
     auto until = deadline;
     if (following_) {
       request_end_notification();
-      // The request to be told of the end may be lost on UDP; it is repeated until answered.
+      // The request for a notification of the end may be lost on UDP; it is repeated until answered.
       if (requests_left_ > 0 && answered_id_ != join_id_) until = std::min(until, ask_at_);
     }
     const auto message = wait(until);

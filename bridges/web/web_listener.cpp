@@ -315,7 +315,7 @@ void HttpPeer::received(error_code error) {
     return send(plain_answer(431, "headers of more than 16 KiB\n"), false);
   if (error == http::error::body_limit || error == http::error::unexpected_body)
     return send(plain_answer(413, "requests have no body here\n"), false);
-  // The client has gone; there is nobody to answer.
+  // The client has disconnected; no answer is possible.
   if (error == http::error::end_of_stream || error == http::error::partial_message) return cut();
   if (error && error.category() == make_error_code(http::error::bad_method).category())
     return send(plain_answer(400, "not a valid HTTP request: " + error.message() + "\n"), false);

@@ -73,7 +73,7 @@ Autopilot::Autopilot(const Params& params, const sim::DeviceContext& context)
   check_helm(context, params.helm);
   if (actuators_) check_level(*actuators_, params.gains.attitude, context);
   warn_of_no_speed(context);
-  // The setpoints that nobody gives are those of the start, so that an autopilot without a command keeps the vehicle
+  // Setpoints that are not given are those of the start, so that an autopilot without a command keeps the vehicle
   // where it is instead of moving it to zero.
   const HoldParams& hold = params.hold;
   desired_.speed_mps = hold.speed_mps;

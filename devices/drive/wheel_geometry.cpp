@@ -53,7 +53,7 @@ WheelGeometry wheel_geometry(const sim::VehicleConfig& vehicle, const std::strin
   WheelGeometry wheel;
   wheel.center_V_m = joint.anchor_m;
   wheel.axis_V = (joint.type == sim::JointType::hinge2 ? joint.axis2 : joint.axis1).axis.normalized();
-  // The wheel is the second body of a joint as a rule; a joint may name it first.
+  // The wheel is usually the second body of a joint; a joint may name it first.
   for (const std::size_t end : {1u, 0u}) {
     if (end >= joint.bodies.size()) continue;
     const sim::BodyConfig* body = body_named(vehicle, joint.bodies[end]);

@@ -40,7 +40,7 @@ void Compass::Params::read(sim::ParamReader& in) {
   in.read("soft_iron", soft_iron, sim::any_number(), "3x3 matrix on the field, 9 numbers by rows");
   if (!in.describing() && soft_iron.size() != 9) {
     in.error("soft_iron", "'soft_iron' must have 9 numbers, got " + std::to_string(soft_iron.size()));
-    // The error is reported; measuring goes on with the identity, which expects nine numbers.
+    // The error is reported; measuring continues with the identity, which expects nine numbers.
     soft_iron = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   }
   in.read_choice("tilt_compensation", tilt_compensation,

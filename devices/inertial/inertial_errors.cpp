@@ -20,7 +20,7 @@ InertialErrors::InertialErrors(const InertialParams& params, const sim::NoisePar
       fault_(*context.noise_origin(noise).fault),
       nominal_dt_s_(context.config.rate_hz > 0 ? 1 / context.config.rate_hz
                                                : sim::to_seconds(context.world.step_time())) {
-  // Drawn once for each unit, from a stream of its own: other noise does not change which unit it is.
+  // Drawn once for each unit, from its own stream: other noise does not change which unit it is.
   sim::Random random(context.world.seed(), context.full_name() + "#" + noise.key + "/unit");
   for (int i = 0; i < 3; ++i) drawn_bias_[i] = random.gaussian();
   for (int row = 0; row < 3; ++row)

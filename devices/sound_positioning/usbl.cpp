@@ -90,7 +90,7 @@ void Usbl::measure(const sim::SenseContext& context) {
   assumed_mps_ = params_.assumed_sound_speed_mps.value_or(medium.sound_speed_mps(p_WS));
   R_WS_ = context.X_WS.linear();
   depth_m_ = medium.depth_m(p_WS);
-  // The next ping waits for all answers: those of two pings could not be told apart.
+  // The next ping waits for all answers: those of two pings could not be distinguished.
   if (context.now < next_ping_ || !interrogator_.done(context.now) || !medium.in_water(p_WS)) return;
   next_ping_ = context.now + sim::from_seconds(params_.ping_period_s);
   interrogator_.ping(context.now);

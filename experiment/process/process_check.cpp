@@ -136,7 +136,7 @@ void check_slots(const sim::WorldConfig& world, const std::vector<Program>& prog
       if (!later.is_shipped() || !earlier.is_shipped()) continue;
       const auto slots = later.slots(), taken = earlier.slots();
       if (!slots || !taken || !slots->meets(*taken)) continue;
-      // Packets only collide where both are heard.
+      // Packets only collide where both are received.
       if (!share_the_water(world, later.vehicle(), earlier.vehicle())) continue;
       const std::string both =
           slots->cycle_us == taken->cycle_us

@@ -139,7 +139,7 @@ std::string table(const std::vector<Cell>& cells) {
   html += "<th>B/h</th><th>us/event</th></tr></thead>\n<tbody>\n";
   for (const std::string& algorithm : distinct(cells, &Cell::algorithm)) {
     html += "<tr><th scope=\"row\">" + html_text(algorithm) + "</th>";
-    // A modem must carry the payload in the worst world. fmax() ignores NaN, the figure of a world without a result.
+    // A modem must carry the payload in the worst world. `fmax` ignores NaN, the figure of a world without a result.
     double max_bytes = nan, max_us = nan;
     for (const std::string& world : worlds) {
       const auto cell = std::find_if(cells.begin(), cells.end(), [&](const Cell& each) {

@@ -123,7 +123,7 @@ void write_snapshot(const std::string& path, const Snapshot& snapshot) {
   const auto file = make_part_file<SnapshotFileError>(path, unfinished);
   try {
     write_all(file.number(), bytes, path);
-    // Some file systems do not support fsync() (EINVAL).
+    // Some file systems cannot be synchronized (EINVAL).
     if (fsync(file.number()) != 0 && errno != EINVAL) throw cannot("written", path, errno);
     if (rename(unfinished.c_str(), path.c_str()) != 0) throw cannot("written", path, errno);
   } catch (...) {

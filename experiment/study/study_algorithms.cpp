@@ -169,7 +169,7 @@ std::vector<std::string> arguments_of_algorithms(const LoadedStudy& study, const
       algorithm_scoring(study.worlds[run.in_case].config, config.algorithms, config.algorithms_place);
   std::string names;
   for (const std::string& algorithm : config.algorithms) names += (names.empty() ? "" : ",") + algorithm;
-  // A process of its own: an estimator that crashes fails its run, not the study.
+  // A separate process: an estimator that crashes fails its run, not the study.
   return {"shoal-nav",
           "--log",
           record_of(run),

@@ -173,7 +173,7 @@ std::string until_text(const LoadedStudy& study, const std::vector<StudyRun>& ru
   const bool holds = until_holds(study, runs);
   std::string text = fmt::format("until: {} {} after {}", until.text, holds ? "holds" : "does not hold", seeds);
   if (used < until.planned_seeds) text += "; runs of the others are not used";
-  // With few seeds an interval is small by chance now and then, and the study stops just then.
+  // With few seeds an interval is small by chance from time to time, and the study stops just then.
   if (holds && used < min_sure_batch)
     text += fmt::format("; with fewer than {} seeds this may be chance", min_sure_batch);
   return text;

@@ -115,7 +115,7 @@ void MessageTypes::resolve() {
         throw MessageError("type " + name + ": member '" + member.name + "' has the unknown type " + member.type_name);
     }
   std::vector<const MessageSchema*> parents;
-  // Sizes first: a type that contains itself is refused before the fingerprints recurse.
+  // Sizes first: a type that contains itself is refused before its fingerprint, which would not end.
   for (auto& [name, schema] : by_name_) schema.min_size = compute_min_size(schema, parents);
   for (auto& [name, schema] : by_name_) {
     schema.fingerprint = compute_fingerprint(schema, parents);

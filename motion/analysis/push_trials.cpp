@@ -146,7 +146,7 @@ std::vector<PushOutcome> outcomes_of(MotionStage& stage, const std::vector<Push>
     stage.go_to(push.at_s);
     snapshots.push_back(stage.world().state().snapshot());
   }
-  // Each thread has a world of its own, which continues from the snapshots.
+  // Each thread has its own world, which continues from the snapshots.
   PushWorlds worlds(stage);
   std::vector<PushOutcome> outcomes(pushes.size());
   sim::ThreadPool(options.threads).for_each(pushes.size(), [&](std::size_t i) {

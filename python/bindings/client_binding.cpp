@@ -257,7 +257,7 @@ class Client : public Guarded {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     };
     try {
-      // Other threads of Python go on while this one waits.
+      // Other threads of Python continue while this one waits.
       const WithoutGil others;
       const StopBySignal stop(*own_);
       const Waiting waiting(*own_);

@@ -357,7 +357,7 @@ class Encoder {
 
   void text(const py::handle& value) {
     if (!PyUnicode_Check(value.ptr())) refuse(path_, "a str", value);
-    // Bytes that are no UTF-8 came in by the same escape, so a message can be passed on unchanged.
+    // Bytes that are not UTF-8 came in by the same escape, so a message can be passed on unchanged.
     const py::object bytes =
         py::reinterpret_steal<py::object>(PyUnicode_AsEncodedString(value.ptr(), "utf-8", "surrogateescape"));
     if (!bytes) {

@@ -264,7 +264,7 @@ const Renderer::Paint& Renderer::paint(Tile& tile, int part_number, int material
   const PartInfo& part = physics_.parts()[static_cast<std::size_t>(part_number)];
   const Surface& material = surfaces_[static_cast<std::size_t>(material_number)];
   found = {part_number, material_number, material.gloss, nullptr, false, material.color};
-  // Vehicles without colors get one each, so that they can be told apart; fixed objects look like ground.
+  // Vehicles without colors get one each, so that they can be distinguished; fixed objects look like ground.
   const bool fixed = physics_.bodies()[static_cast<std::size_t>(part.body)]->fixed();
   if (part.color) {
     found.color = linear_color(*part.color);

@@ -76,8 +76,8 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
   declared.number("lost_std_m", planner.lost_std_m, 0.01, 1000,
                   "standard deviation of the estimate above which it does not plan");
   declared.number("reached_m", planner.reached_m, 0.05, 100, "acceptance radius of a goal");
-  declared.number("stray_m", planner.stray_m, 0.1, 1000, "distance from the path at which it replans");
-  declared.number("retry_s", planner.retry_s, 0.1, 1e6, "time after which it replans when there was no path");
+  declared.number("stray_m", planner.stray_m, 0.1, 1000, "distance from the path at which it plans again");
+  declared.number("retry_s", planner.retry_s, 0.1, 1e6, "time after which it plans again when there was no path");
   declared.number("give_up_s", planner.give_up_s, 1, 1e6, "time without a path after which it gives up a goal");
   options.participation.declare(declared);
   autonomy::set_help_end(declared, {"shoal-planner --name planner --vehicle rover1 --goals-m '[[10,0],[10,5]]'"},

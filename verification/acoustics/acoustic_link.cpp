@@ -199,7 +199,7 @@ LinkBudget link_budget(const AcousticLink& link, const sim::AcousticsConfig& aco
   budget.level = link.source_level + budget.from_gain + budget.spreading + budget.absorption + budget.to_gain;
   budget.noise_per_Hz = noise.spectral_level(link.centre_Hz / 1000);
   budget.noise_reduction = sim::directivity_index(link.to.directivity, link.centre_Hz, c_mps);
-  // A directional receiver hears less of noise that comes from all sides: by its directivity index (Urick 1983,
+  // A directional receiver receives less of a noise that comes from all sides: by its directivity index (Urick 1983,
   // chapter 3).
   budget.noise = noise.band_level(link.centre_Hz, link.bandwidth_Hz) - budget.noise_reduction;
   budget.snr = budget.level - budget.noise;

@@ -36,7 +36,7 @@ void MessageFeed::drop_unread_channels() {
     bytes_ -= channel.second.payload.size();
     return true;
   });
-  // Nobody reads: the past is not needed either.
+  // Without subscribers the past is not needed either.
   if (channels_.empty()) {
     past_.clear();
     past_bytes_ = 0;

@@ -20,7 +20,7 @@ void PoseHistory::start_branch(std::int32_t number, std::int64_t start_us, std::
     // Only a branch that continues the present one has its past.
     if (continues) track.branch.parent = present_;
   }
-  // Starting anew is better than growing without limit, or refusing to branch.
+  // A fresh start is better than growing without limit, or refusing to branch.
   if (tracks_.size() >= max_branches) {
     clear();
     track.branch.parent.reset();

@@ -101,7 +101,7 @@ class ParticleStart final : public OwnFilterEstimator<ParticleStart> {
   void resample() {
     double squares = 0;
     for (const double weight : weights_) squares += weight * weight;
-    // Effective number of particles: resampling without need loses variety (Arulampalam et al. 2002).
+    // Effective number of particles: resampling without need loses variety.
     if (1 / squares > 0.5 * count) return;
     std::vector<Vector2> chosen;
     // Systematic resampling: one random number for all.

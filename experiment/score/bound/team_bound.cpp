@@ -304,7 +304,7 @@ void TeamBound::handle(const Event& event, sim::Time at) {
       use_sighting(event, at);
       return;
     case What::sending:
-      // The error at the time of sending becomes a state of its own, which keeps its correlations until the range is
+      // The error at the time of sending becomes its own state, which keeps its correlations until the range is
       // used.
       covariance_.append(-point_row(event.site, at, event.toward) -
                          clock_row(event.site.vehicle, event.sound_speed_mps));

@@ -159,7 +159,7 @@ int view_bus(const ViewArguments& arguments) {
     if (!view.has_scene() && now >= next_request) {
       ask_for_scene(lcm);
       next_request = now + ask_interval;
-      // The first request may have been too early; after two the user is told what is missing.
+      // The first request may have been too early; after two the user is notified.
       if (++requests == 2)
         sim::log_info(
             "waiting for sim.scene: a run sends it on request; a played log repeats it as recorded, every 10 s or, if "
