@@ -82,7 +82,7 @@ class Protocol final : public WebProtocol, private ros2::TopicSink {
   void jump(std::int64_t utime);
   /// Sets what clients know of pause and speed.
   void set_state(const PlaybackState& state);
-  /// Returns the next request, or nothing.
+  /// Returns the next request, or std::nullopt.
   std::optional<Request> take_request();
   /// Answers a request; without effect when the client has left.
   void reply(const Request& request, bool ok, std::string text);

@@ -67,8 +67,8 @@ class WebServer final : public PageOutput {
   /// Removes all assets, for another scene.
   void clear_assets();
 
-  /// Returns the next request of a page, or nothing.  A page without the token is refused `control`, `play` and `seek`
-  /// here; other requests carry `may_control`.
+  /// Returns the next request of a page, or std::nullopt.  A page without the token is refused `control`, `play` and
+  /// `seek` here; other requests carry `may_control`.
   std::optional<ViewRequest> take_request();
   /// Sends a JSON text to one page; without effect when it has left.
   void reply(int client, std::string json);

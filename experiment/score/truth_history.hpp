@@ -29,7 +29,7 @@ class TruthHistory {
   /// Call once after every step.
   void after_step();
   const Truth& now() const;
-  /// Returns the truth at the step nearest to a time; nothing when it lies in the future or before the history.
+  /// Returns the truth at the step nearest to a time; std::nullopt if it lies in the future or before the history.
   std::optional<Truth> at(sim::Time time) const;
   void visit_state(sim::StateArchive& archive);
 

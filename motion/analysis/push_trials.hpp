@@ -21,7 +21,7 @@ struct PushOptions {
 /// Pushes that a vehicle withstands at an instant, while its motion continues.
 struct PushMargin {
   double at_s = 0;                    ///< time of the run
-  std::vector<double> withstood_mps;  ///< by direction: greatest impulse over mass that does not make it fall
+  std::vector<double> withstood_mps;  ///< by direction: largest impulse per mass that it withstands
   double mass_kg = 0;
   double settle_m =
       0;  ///< greatest distance from where it is without a push, over pushes of settle_mps in all directions

@@ -94,7 +94,7 @@ void Script::update_records(Time now) {
       const Zone& zone = zones_.all()[static_cast<std::size_t>(i)];
       if (!zone.contains(p_WV)) continue;
       const auto& limit = zone.config().speed_limit_mps;
-      // A vehicle speeds once per step, however many zones with limits overlap there.
+      // Excess speed counts once per step, however many zones with limits overlap.
       speeding = speeding || (limit && vehicle->base().v_WB_W().norm() > *limit);
       if (zone.config().finish && !record.finish_s) record.finish_s = to_seconds(now);
     }

@@ -17,7 +17,7 @@ namespace command_line {
 namespace {
 
 /// Returns the input, safe to print on one line.
-/// Returns the whole text as a number; nothing for any other text.
+/// Returns the whole text as a number; std::nullopt for any other text.
 template <class Number>
 std::optional<Number> parse_number(const std::string& text) {
   Number number{};

@@ -25,7 +25,7 @@ bool contains(const std::string& name, std::initializer_list<const char*> parts)
                      [&](const char* part) { return name.find(part) != std::string::npos; });
 }
 
-/// Returns the words of a rule such as `a, b or c`; nothing for another rule, such as `from 1 to 5`.
+/// Returns the words of a rule such as `a, b or c`; empty for another rule, such as `from 1 to 5`.
 std::string words_of_rule(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t colon = type.find(':');
@@ -123,7 +123,7 @@ struct BashCases {
   }
 };
 
-/// Returns a text for a specification of zsh's _arguments, in which brackets and colons mean something.
+/// Returns a text for a specification of zsh's _arguments, in which brackets and colons are special.
 std::string zsh_text(const std::string& text) {
   std::string safe;
   for (const char c : text) {

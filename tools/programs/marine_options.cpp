@@ -45,7 +45,7 @@ void MarineOptions::declare(command_line::DeclaredOptions& options) {
       .needs({"leader"});
   options.exactly_one({"waypoints_m", "circle_m", "zigzag_m", "follow", "leader"});
   // Parameters of all behaviors.
-  options.flag("loop", loop, "restart the route after its last waypoint; without it the vehicle stops there");
+  options.flag("loop", loop, "restart the route after its last waypoint; otherwise the vehicle stops there");
   options.number("speed_mps", speed_mps, 0.05, 10, "speed through the water; the maximum when it follows");
   sending.declare(options, "its state");
 }
@@ -85,7 +85,7 @@ void AccessOptions::declare(command_line::DeclaredOptions& options, const std::s
   options.integer("slots", slots, 1, 1000, "slots in a cycle").needs({"slot"});
   options.number("slot_s", slot_s, 0.1, 3600, "length of a slot");
   options.number("guard_s", guard_s, 0, 3600,
-                 "guard time at the end of a slot; without it all but the first second, or the second half of a short "
+                 "guard time at the end of a slot; default: all but the first second, or the second half of a short "
                  "slot");
   options.number("random_s", random_s, 0, 3600, "sends " + what + " at random times with this mean interval; 0: never");
   options.seed("seed", seed, "seed of the random times");

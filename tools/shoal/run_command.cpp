@@ -177,7 +177,7 @@ void add_output_options(CLI::App& command, RunArguments& arguments) {
       ->type_name("DIR");
   command.add_flag_callback(
       "--no-plots", [&] { arguments.run.plots = false; }, "results without plots");
-  command.add_flag("--quiet", arguments.run.quiet, "no progress and no summary");
+  command.add_flag("--quiet", arguments.run.quiet, "print neither progress nor summary");
 }
 
 void add_bus_options(CLI::App& command, RunArguments& arguments) {
@@ -187,7 +187,7 @@ void add_bus_options(CLI::App& command, RunArguments& arguments) {
       ->check(one_of({"lcm", "none"}).description(""));
   add_lcm_url_option(command, arguments.run.lcm_url);
   command.add_flag("--lcm-shared", arguments.run.lcm_shared,
-                   "start even if another simulator is on the bus; without it the exit code is then 4");
+                   "start even if another simulator is on the bus; otherwise the exit code is 4");
   auto* key = command.add_flag("--control-key", arguments.run.control_key,
                                "require the key of the run for control, even if its bus does not leave this machine");
   command

@@ -20,7 +20,7 @@ struct VehicleEstimate {
 };
 
 /// Reads shoal.estimate_t on any channel, and shoal.pose_t on `VEHICLE.estimate`: on others a pose may be anything,
-/// such as a goal.  Returns nothing for other messages, and for a position that is not finite.  Throws
+/// such as a goal.  Returns std::nullopt for other messages, and for a position that is not finite.  Throws
 /// shoal::MessageError when the message is damaged.
 std::optional<VehicleEstimate> read_estimate(std::string_view channel, std::span<const std::byte> payload);
 

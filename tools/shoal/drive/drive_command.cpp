@@ -333,7 +333,7 @@ static void add_drive_command(CLI::App& app, int& exit_code) {
   // Connection.
   command
       ->add_option("--run", arguments->run,
-                   "folder of the run, with its key in run.key; without it the key in SHOAL_RUN_KEY, if set")
+                   "folder of the run, with its key in run.key; default: the key in SHOAL_RUN_KEY, if set")
       ->type_name("DIR");
   command->add_option("--timeout", arguments->timeout_s, "wall seconds to wait for the simulator")
       ->type_name("S")

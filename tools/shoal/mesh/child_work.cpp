@@ -54,7 +54,7 @@ void write_all(int to, const std::string& bytes) {
   _exit(0);
 }
 
-/// Reads all bytes up to the end; nothing when the time limit is exceeded.
+/// Reads all bytes up to the end; std::nullopt if the time limit is exceeded.
 std::optional<std::string> read_until(int from, Clock::time_point deadline) {
   std::string bytes;
   std::string chunk(1 << 16, '\0');

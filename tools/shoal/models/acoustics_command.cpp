@@ -39,7 +39,7 @@ struct AcousticsArguments {
   std::optional<double> water_depth_m;
 };
 
-/// Parses up to three numbers with `separator` between them; nothing for any other text.
+/// Parses up to three numbers with `separator` between them; std::nullopt for any other text.
 std::optional<sim::Vector3d> parse_three(const std::string& text, char separator) {
   sim::Vector3d numbers;
   const char* at = text.data();
@@ -165,7 +165,7 @@ verification::AcousticLink link_of(const AcousticsArguments& arguments, const si
   return link;
 }
 
-/// Returns the depth of the fixed bottom below the middle of the link, for echoes; nothing if there is none.
+/// Returns the depth of the fixed bottom below the middle of the link, for echoes; std::nullopt if there is none.
 std::optional<double> water_depth_m(const verification::AcousticLink& link, const sim::World& world) {
   sim::Vector3d p_W = (link.from.p_W + link.to.p_W) / 2;
   const double surface_m = world.medium().surface_m(p_W.x(), p_W.y());
@@ -385,7 +385,7 @@ static void add_acoustics_command(CLI::App& app, int& exit_code) {
                   "shoal acoustics worlds/coop_underwater.yaml --depth 2 --range 1000 --rays rays.png",
                   "shoal acoustics --closed-forms tests/fidelity/reference/closed_forms.csv"},
                  {{0, "success"},
-                  {1, "a closed form was not met"},
+                  {1, "a closed form was not matched"},
                   {2, "wrong usage, or a mistake in the world"},
                   {4, "file error"}},
                  {"docs/models/acoustics.md has the equations."}});

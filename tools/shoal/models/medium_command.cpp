@@ -154,7 +154,7 @@ static void add_medium_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   CLI::Option* profile =
       command->add_flag("--profile", arguments->profile, "print a vertical profile from the surface to --at");
-  command->add_option("--waves", arguments->waves_s, "height and period of the waves there over this time, s")
+  command->add_option("--waves", arguments->waves_s, "print height and period of the waves at --at over this time, s")
       ->type_name("S")
       ->check(number_from(1, 1e5))
       ->excludes(profile);

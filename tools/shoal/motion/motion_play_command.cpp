@@ -72,7 +72,7 @@ std::string phase_text(const motion::MotionStage& stage) {
 void choose_world(motion::StageOptions& stage, const sim::JointMotion& motion, const std::string& file) {
   if (stage.world.empty()) {
     if (!motion::use_embedded_world(stage, motion, file))
-      throw command_line::UsageError("needs --world: '" + file + "' holds no world (motion record --embed)");
+      throw command_line::UsageError("needs --world: '" + file + "' contains no world (motion record --embed)");
     std::cout << "world: the one embedded in " << file << '\n';
     return;
   }
@@ -176,7 +176,7 @@ int play(PlayArguments arguments) {
   // Report.
   std::cout << tracking.text(motion);
   if (is_cut) {
-    std::cout << fmt::format("ended after {:.3f} s: while it settled\n", stage.now_s());
+    std::cout << fmt::format("ended after {:.3f} s, while it settled\n", stage.now_s());
     return 128 + experiment::caught_signal();
   }
   std::cout << fmt::format("{:.3f} s simulated, state hash at the end of the motion {:016x}\n", played_s, end_hash);

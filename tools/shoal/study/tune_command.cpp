@@ -34,7 +34,7 @@ std::string values_of(const experiment::Tuning& tuning, const experiment::TunedP
 /// Returns `a rule of its world does not hold in 2 of 4 runs`; empty: in none.
 std::string failed_text(const experiment::TunedPoint& point) {
   if (point.failed == 0) return {};
-  return fmt::format("a rule of its world does not hold in {} of {} runs", point.failed, point.runs);
+  return fmt::format("a rule of its world fails in {} of {} runs", point.failed, point.runs);
 }
 
 /// Throws CLI::ValidationError for a figure that no metric of the world has.

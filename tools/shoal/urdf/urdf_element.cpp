@@ -38,7 +38,7 @@ std::vector<std::string_view> words_of(std::string_view text) {
   return words;
 }
 
-/// Parses a number; nothing for any other text.
+/// Parses a number; std::nullopt for any other text.
 std::optional<double> parse_number(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   double value = 0;

@@ -64,10 +64,10 @@ void make_page(const std::string& record, const std::string& directory, const st
     throw std::runtime_error(
         fmt::format("{}: is of world '{}', but the run in {} is of '{}'", record, page.world, directory, world));
   write_page(path, page.html);
-  std::cout << path << ": the run in three dimensions, " << page.to_text() << '\n';
+  std::cout << path << ": the run in 3-D, " << page.to_text() << '\n';
 }
 
-/// Makes the page in three dimensions, and returns its path; empty: there is none, as it has said.
+/// Makes the 3-D page and returns its path; empty if there is none, after a message.
 std::string page_in_3d(const ReportArguments& arguments) {
   const std::string& directory = arguments.directories.front();
   const bool demanded = !arguments.record.empty() || !arguments.page.empty();
@@ -85,7 +85,7 @@ std::string page_in_3d(const ReportArguments& arguments) {
     return path;
   } catch (const std::runtime_error& reason) {
     if (demanded) throw;
-    sim::log_info("no page in three dimensions: {}", reason.what());
+    sim::log_info("no 3-D page: {}", reason.what());
     return "";
   }
 }
