@@ -48,7 +48,7 @@ class MarineEkf {
     double bias_as_noise_s = 60;
 
     double range_gate = 10.83;     ///< squared innovation over its variance: 99.9 % of chi-square with 1 degree
-    double position_gate = 13.82;  ///< the same with 2 degrees
+    double position_gate = 13.82;  ///< the same with 2 degrees of freedom
     int max_refusals = 5;          ///< consecutive ones, before a state is considered wrong instead of the measurement
   };
   struct Range {

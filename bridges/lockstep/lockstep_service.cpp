@@ -145,7 +145,7 @@ std::vector<std::string> LockstepService::late() {
 }
 
 LockstepOutcome LockstepService::synchronize(const Wait& wait, const std::function<bool()>& idle) {
-  take_messages();  // also when no client is due: messages are checked, and do not accumulate
+  take_messages();  // even when no client is due: messages are checked, and do not accumulate
   drop_overflowing();
   while (true) {
     std::vector<std::string> names = late();

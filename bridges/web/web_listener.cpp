@@ -154,7 +154,7 @@ class WebSocketPeer final : public Peer, public WebLink, public std::enable_shar
 };
 
 void WebSocketPeer::set_options() {
-  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own times
+  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own time-outs
   socket_.set_option(websocket::stream_base::timeout{request_time, silence, true});
   socket_.read_message_max(chosen_.protocol->max_message_bytes());
   socket_.auto_fragment(false);

@@ -21,7 +21,7 @@ struct StudyRow {
   std::string shoal, processor, c_library;
 };
 
-/// Splits a line of a CSV file into fields, of which some are in quotes.  Nothing when a quote is not closed.
+/// Splits a line of a CSV file into fields, of which some are in quotes.  std::nullopt if a quote is not closed.
 std::optional<std::vector<std::string>> csv_fields(std::string_view line);
 
 /// Parses the text of a study.csv, with all its columns.  `name`: of the file, for errors.  Throws std::runtime_error

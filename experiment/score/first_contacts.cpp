@@ -123,7 +123,7 @@ void FirstContacts::touch(const Group& a, const Group& b) {
   if (fresh) report(pair, contact);
 }
 
-/// Reports a contact once, also when the run is rewound and repeats it.
+/// Reports a contact once, even when the run is rewound and repeats it.
 void FirstContacts::report(const Pair& pair, const Contact& contact) {
   if (!report_ || reported_.size() > max_lines || !reported_.emplace(pair, contact.first_s).second) return;
   if (reported_.size() > max_lines)

@@ -87,7 +87,7 @@ class NameCheck {
                const sim::SourcePlace& place, const std::string& who) {
     if (!std::binary_search(known.begin(), known.end(), name))
       diagnostics_.error(place, who,
-                         "'" + std::string(key) + "' names nothing of this world: '" +
+                         "'" + std::string(key) + "' names nothing in this world: '" +
                              sim::shortened(sim::printable(name)) + "'; known: " + sim::list_text(known));
   }
 

@@ -96,7 +96,7 @@ class Walker {
       const std::int64_t size =
           dimension.is_variable() ? lengths[static_cast<std::size_t>(dimension.length_slot)] : dimension.constant;
       if (size < 0)
-        return fail(member.name, "has the negative size " + std::to_string(size) + " ('" + dimension.text + "')");
+        return fail(member.name, "has a negative size, " + std::to_string(size) + " ('" + dimension.text + "')");
       if (size == 0) empty = true;
       if (__builtin_mul_overflow(count, static_cast<std::uint64_t>(size), &count) || count > (1ull << 58))
         return fail(member.name, "is too large ('" + dimension.text + "' is " + std::to_string(size) + ")");

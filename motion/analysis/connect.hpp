@@ -66,7 +66,7 @@ enum class ConnectionKind { straight, slower, by_stance, searched, none };
 /// Motion that connects two poses.
 struct Connection {
   ConnectionKind kind = ConnectionKind::none;
-  sim::JointMotion motion;            ///< the best one, also when none arrives
+  sim::JointMotion motion;            ///< the best one, even when none arrives
   double value = -2;                  ///< of its worst world
   std::vector<Arrival> straight;      ///< of the straight connection, by world: the world as it is first
   std::vector<Arrival> arrivals;      ///< of the best motion

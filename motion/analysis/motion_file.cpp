@@ -29,7 +29,7 @@ std::string frames_path(const std::string& path) {
   return fs::path(path).replace_extension(".csv").string();
 }
 
-/// Returns whether the motion file names the CSV file beside it, also when the motion file has mistakes.
+/// Returns whether the motion file names the CSV file beside it, even when the motion file has mistakes.
 bool has_frames(const std::string& path) {
   const std::string frames = fs::path(frames_path(path)).filename().string();
   std::ifstream file(path, std::ios::binary);

@@ -23,7 +23,7 @@ struct FormatOptions {
   double loop_step_s = 0;          ///< control step of a player of loops; 0: the file has one cycle
   std::optional<double> at_s;      ///< instant of a posture; unset: the only one
   std::string creator = "Shoal";   ///< of an MTN file
-  std::string design;              ///< design label of an MTN file; empty: that of the names of joints
+  std::string design;              ///< design label of an MTN file; empty: that of the list of joint names
   double row_s = 0.02;             ///< time of a row of a gait, and of a step between two rows of a behavior
   std::optional<SkillKind> skill;  ///< unset: by the motion
 };

@@ -17,7 +17,7 @@
 namespace sim {
 
 void JournalReplay::replay(std::span<const std::byte> bytes, std::int64_t last_step) {
-  journal_.start_again({});  // also when it cannot be read: the world is then as in its file
+  journal_.start_again({});  // even when it cannot be read: the world is then as in its file
   // Restore texts and entries.
   WorldJournal::Texts texts;
   std::vector<Entry> entries;

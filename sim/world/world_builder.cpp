@@ -95,7 +95,7 @@ const WorldObject& WorldBuilder::build_object(std::shared_ptr<const ObjectConfig
 }
 
 const WorldObject& WorldBuilder::place_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE) {
-  // An object moved by an actor must be kinematic, also when another object of its name is added.
+  // An object moved by an actor must be kinematic, even when another object of its name is added.
   const bool led = std::any_of(parts_.config.actors.begin(), parts_.config.actors.end(),
                                [&](const ActorConfig& actor) { return actor.object == name; });
   const auto own = std::make_shared<ObjectConfig>(config);

@@ -73,10 +73,12 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 BenchFigures measure_bench_apart(const BenchScene& scene, int vehicles, int threads, const BenchOptions& options) {
   int ends[2];
-  if (::pipe(ends) != 0) throw std::runtime_error(fmt::format("no pipe for the benchmark: {}", std::strerror(errno)));
+  if (::pipe(ends) != 0)
+    throw std::runtime_error(fmt::format("cannot open a pipe for the benchmark: {}", std::strerror(errno)));
   std::fflush(nullptr);  // otherwise both processes would write what is buffered
   const pid_t child = ::fork();
-  if (child < 0) throw std::runtime_error(fmt::format("no process for the benchmark: {}", std::strerror(errno)));
+  if (child < 0)
+    throw std::runtime_error(fmt::format("cannot start a process for the benchmark: {}", std::strerror(errno)));
   if (child == 0) {
     ::close(ends[0]);
     answer(ends[1], scene, vehicles, threads, options);

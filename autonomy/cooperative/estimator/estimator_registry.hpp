@@ -67,8 +67,8 @@ constexpr bool is_at_sea() {
     return true;
 }
 
-/// Registers an algorithm, in its own file: an Estimator with `static constexpr const char* meaning`.  Without a
-/// on_bearing() of its own it does not work on land.
+/// Registers an algorithm, in its own file: an Estimator with `static constexpr const char* meaning`.  Without its
+/// own on_bearing() it does not work on land.
 #define SHOAL_ESTIMATOR(name, Type)                                                 \
   [[maybe_unused]] static const bool registered_estimator_##Type =                  \
       ::navigation::detail::add_algorithm({name,                                    \

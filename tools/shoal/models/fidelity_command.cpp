@@ -84,7 +84,7 @@ static void add_fidelity_command(CLI::App& app, int& exit_code) {
   add_log_level_option(*command);
   // Options.
   command->add_option("CASES", arguments->cases, "file of cases")->required();
-  command->add_option("--case", arguments->names, "only this case, or the cases of this group")
+  command->add_option("--case", arguments->names, "run only this case, or the cases of this group")
       ->type_name("NAME")
       ->type_size(1)
       ->allow_extra_args(false);

@@ -36,7 +36,7 @@ struct EvolveArguments {
   bool overwrite = false;
 };
 
-/// Returns in which worlds a value holds.
+/// Returns a phrase for the worlds in which a value holds.
 std::string in_worlds(std::size_t count) {
   return count == 1 ? "in one world" : fmt::format("in the worst of {} worlds", count);
 }

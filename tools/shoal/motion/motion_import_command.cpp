@@ -112,7 +112,7 @@ void add_motion_import_command(CLI::App& motion, int& exit_code) {
   add_log_level_option(*command);
   command->add_option("FILE", arguments->input, "file of the other program")->required();
   add_format_options(*command, *arguments);
-  command->get_option("--name")->description("play_motion2, opencat: motion that is read, of several in the file");
+  command->get_option("--name")->description("play_motion2, opencat: which of several motions in the file to read");
   command_line::set_help_end(
       *command, {{"shoal motion import wave.mtn --vehicle ers7 --output wave.yaml",
                   "shoal motion import walk.yaml --format ros --output walk_motion.yaml",
