@@ -112,7 +112,7 @@ void JointDrive::check_stops(const Axis& axis, const Settings& settings) const {
   // An infinite stop means none, but only on its own side.
   if (settings.low_stop == std::numeric_limits<double>::infinity() ||
       settings.high_stop == -std::numeric_limits<double>::infinity())
-    throw std::runtime_error(text("no stop is -infinity for 'low_stop' and +infinity for 'high_stop'"));
+    throw std::runtime_error(text("to remove a stop, give -infinity as 'low_stop' or +infinity as 'high_stop'"));
 }
 
 JointDrive::Axis JointDrive::with(Axis axis, const Settings& settings) const {

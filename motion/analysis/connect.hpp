@@ -16,8 +16,8 @@ namespace motion {
 
 /// How a connection of two poses is searched.
 struct ConnectOptions {
-  int candidates = 300;  ///< at most, of the search; those of before it are not counted
-  int worlds = 4;        ///< perturbed ones, besides the world as it is
+  int candidates = 300;  ///< limit of the search; earlier candidates are not counted
+  int worlds = 4;        ///< perturbed ones, in addition to the unperturbed world
   double velocity = 1;   ///< mean one of the joint that moves furthest on the straight connection, rad/s or m/s
   double settle_s = 1;   ///< time after each motion in which the vehicle may still fall
   double arrive_rad = 2 * std::numbers::pi / 180;  ///< greatest difference of a joint from its end, rad; of a slider m

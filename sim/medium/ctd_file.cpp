@@ -180,7 +180,7 @@ class CtdReader {
   CtdCast cast() const {
     const std::vector<CtdRow> rows = one_cast(lines_);
     if (rows.size() < 2)
-      throw CtdError("needs two rows of rising depth below the header" +
+      throw CtdError("needs two rows of increasing depth below the header" +
                      (missing_.count > 0 ? "; " + missing_text() : ""));
     CtdCast cast;
     for (const CtdRow& row : thinned(rows)) {

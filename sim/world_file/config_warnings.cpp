@@ -229,7 +229,7 @@ class ConfigCheck {
     const double step_s = world_.physics.step_s;
     if (rate_hz * step_s <= close_to_one) return;
     warnings_.warn(place, who,
-                   what + " of " + number_text(rate_hz) + " Hz is above that of the steps: it becomes " +
+                   what + " of " + number_text(rate_hz) + " Hz is above the step rate: it becomes " +
                        number_text(std::round(1e6 / step_s) / 1e6) + " Hz with 'step_s' " + number_text(step_s));
   }
 

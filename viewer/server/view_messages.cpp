@@ -238,8 +238,8 @@ void ViewMessages::take_estimate(std::string_view channel, std::span<const std::
   if (server_.clients() == 0) return;
   const auto estimate = read_estimate(channel, payload);
   if (!estimate) return;
-  // The vehicle is the part of the channel before its last dot.  Of several estimates of a vehicle the page shows that
-  // on VEHICLE.estimate, else the first.
+  // The vehicle is the part of the channel before its last dot.  If a vehicle has several estimates, the page shows
+  // that on VEHICLE.estimate, else the first.
   const std::string vehicle(channel.substr(0, channel.rfind('.')));
   constexpr std::size_t max_vehicles = 10'000;
   if (estimates_.size() >= max_vehicles && !estimates_.contains(vehicle)) return;

@@ -27,7 +27,7 @@ std::string world(const std::string& devices, const std::string& more = "") {
 
 TEST(ConfigWarnings, ReportARateAboveThatOfTheSteps) {
   EXPECT_EQ(warnings_of_file(world("        - {name: imu, type: imu, rate_hz: 300}\n")),
-            "worlds/test.yaml:11:43: vehicle 'r1': device 'imu': 'rate_hz' of 300 Hz is above that of the steps: it "
+            "worlds/test.yaml:11:43: vehicle 'r1': device 'imu': 'rate_hz' of 300 Hz is above the step rate: it "
             "becomes 100 Hz with 'step_s' 0.01\n");
 }
 

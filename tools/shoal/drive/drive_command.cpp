@@ -203,7 +203,7 @@ std::optional<int> find_vehicle(const DriveArguments& arguments, RemoteVehicle& 
     std::this_thread::sleep_for(5ms);
   }
   if (vehicle.description()) return std::nullopt;
-  std::cerr << "shoal drive: no description of '" << arguments.vehicle << "' came on 'sim.vehicle'\n";
+  std::cerr << "shoal drive: no description of '" << arguments.vehicle << "' arrived on 'sim.vehicle'\n";
   return exit_timeout;
 }
 

@@ -143,7 +143,7 @@ void add_map_options(CLI::App& command, MapArguments& arguments) {
   CLI::Option* every =
       command.add_option("--every", arguments.every_s, "interval between maps, s: writes NAME_0000.png and so on")
           ->type_name("S");
-  CLI::Option* until = command.add_option("--until", arguments.until_s, "time of the last one, s")->type_name("S");
+  CLI::Option* until = command.add_option("--until", arguments.until_s, "time of the last map, s")->type_name("S");
   every->check(number_from(1e-6, 1e9))->needs(until);
   until->check(number_from(0, 1e9))->needs(every);
   command.add_option("--height", arguments.height_m, "height of the horizontal slice, m, such as that of a lidar")

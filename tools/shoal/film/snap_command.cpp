@@ -285,7 +285,7 @@ static void add_snap_command(CLI::App& app, int& exit_code) {
   CLI::Option* every =
       command->add_option("--every", arguments->every_s, "interval between images, s: writes NAME_0000.png and so on")
           ->type_name("S");
-  CLI::Option* until = command->add_option("--until", arguments->until_s, "time of the last one, s")->type_name("S");
+  CLI::Option* until = command->add_option("--until", arguments->until_s, "time of the last image, s")->type_name("S");
   every->check(number_from(1e-6, 1e9))->needs(until);
   until->check(number_from(0, 1e9))->needs(every);
   // View and world.

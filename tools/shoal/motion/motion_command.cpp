@@ -10,7 +10,8 @@ namespace tools {
 
 void add_stage_options(CLI::App& command, std::string& world, std::string& vehicle) {
   command.add_option("--world", world, "world with a vehicle that has a motion_player")->type_name("WORLD")->required();
-  command.add_option("--vehicle", vehicle, "its name; required if several have one")->type_name("NAME");
+  command.add_option("--vehicle", vehicle, "name of the vehicle; required if several have a motion_player")
+      ->type_name("NAME");
 }
 
 sim::JointMotion motion_of(const std::string& path) {

@@ -171,7 +171,9 @@ void add_motion_compare_command(CLI::App& motion, int& exit_code) {
   command
       ->add_option("--world", arguments->stage.world, "play both in this world, and compare the paths of the vehicle")
       ->type_name("WORLD");
-  command->add_option("--vehicle", arguments->stage.vehicle, "its name; required if several have a motion_player")
+  command
+      ->add_option("--vehicle", arguments->stage.vehicle,
+                   "name of the vehicle; required if several have a motion_player")
       ->type_name("NAME");
   command->add_option("--png", arguments->png, "plot of the joints that differ, by gnuplot")->type_name("FILE");
   add_set_option(*command, arguments->stage.load.sets);
@@ -183,7 +185,7 @@ void add_motion_compare_command(CLI::App& motion, int& exit_code) {
                                {1, "they differ"},
                                {2, "wrong usage, or mistakes in a file"},
                                {4, "there is no earlier version, or the plot cannot be written"}},
-                              {"Compared are the frames of the first motion, up to the end of the longer one."}});
+                              {"The frames of the first motion are compared, up to the end of the longer one."}});
   command->callback([arguments, &exit_code] { exit_code = compare(*arguments); });
 }
 

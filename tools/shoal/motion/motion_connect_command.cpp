@@ -142,7 +142,9 @@ void add_motion_connect_command(CLI::App& motion, int& exit_code) {
   add_stage_options(*command, arguments->world, arguments->vehicle);
   command->add_option("--output", arguments->output, "motion file to write")->type_name("FILE")->required();
   add_overwrite_option(*command, arguments->overwrite);
-  command->add_option("--worlds", options.worlds, "number of perturbed worlds, besides the world as it is; default 4")
+  command
+      ->add_option("--worlds", options.worlds,
+                   "number of perturbed worlds, in addition to the unperturbed one; default 4")
       ->check(whole_from(0, 1000));
   command
       ->add_option("--velocity", options.velocity,

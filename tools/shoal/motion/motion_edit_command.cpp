@@ -199,7 +199,7 @@ void add_joining(EditCommands& commands) {
       "merge", "Add the joints of another motion", "legs.yaml head.yaml",
       [](const auto& a, const auto& motion) { return motion::merged(motion, motion_of(a.other), a.replace); });
   merge.command.add_option("OTHER", merge.arguments.other, "motion file whose joints are added")->required();
-  merge.command.add_flag("--replace", merge.arguments.replace, "take the joints that both have from OTHER");
+  merge.command.add_flag("--replace", merge.arguments.replace, "take joints that both files have from OTHER");
 }
 
 void add_mirrors(EditCommands& commands) {
@@ -223,7 +223,7 @@ void add_times(EditCommands& commands) {
       ->type_name("JOINT,...");
   const auto scale = commands.add("scale", "Make a motion slower or faster", "wave.yaml --by 2",
                                   [](const auto& a, const auto& motion) { return motion::stretched(motion, a.by); });
-  scale.command.add_option("--by", scale.arguments.by, "factor of all times; 2: half as fast")
+  scale.command.add_option("--by", scale.arguments.by, "factor by which all times are multiplied; 2: half as fast")
       ->type_name("FACTOR")
       ->check(number_from(1e-6, 1e6))
       ->required();

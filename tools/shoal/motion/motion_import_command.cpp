@@ -97,7 +97,7 @@ int import_motion(FormatArguments& arguments) {
   if (!motion.frames.empty()) write_frames(arguments, motion.frames);
   write_bytes(arguments.output, sim::motion_text(motion));
   if (motion.vehicle.empty() && !arguments.keep_names)
-    std::cerr << arguments.output << ": names no vehicle, and joints are called as in " << arguments.input
+    std::cerr << arguments.output << ": names no vehicle, and its joints have the names in " << arguments.input
               << "; --vehicle VEHICLE converts them\n";
   fmt::print("{}: motion '{}' from {}, {} joints, {} s\n", arguments.output, motion.name, format.meaning,
              motion.tracks().size(), sim::number_text(motion.end_s()));
@@ -118,11 +118,11 @@ void add_motion_import_command(CLI::App& motion, int& exit_code) {
                   "shoal motion import walk.yaml --format ros --output walk_motion.yaml",
                   "shoal motion import skills.h --format opencat --name hi --vehicle bittle --output hi.yaml"},
                  {{0, "success"},
-                  {1, "a part of the file cannot be kept, with --strict"},
+                  {1, "with --strict: part of the file cannot be kept"},
                   {2, "wrong usage, or an error in the file"},
                   {4, "file error"}},
                  {formats_text(true),
-                  "Errors are printed as file:line:column: rule, value; of binary files with the number of the byte.  "
+                  "Errors are printed as file:line:column: rule, value; in binary files with the byte number.   "
                   "What the motion "
                   "does not keep of the file is printed, each on its own line.  docs/guides/motion_formats.md "
                   "describes the formats."}});

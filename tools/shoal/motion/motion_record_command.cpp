@@ -220,7 +220,9 @@ void add_motion_record_command(CLI::App& motion, int& exit_code) {
   command->add_option("FILE", arguments->file, "motion file")->required();
   command->add_option("--world", arguments->stage.world, "world with a vehicle that has a motion_player")
       ->type_name("WORLD");
-  command->add_option("--vehicle", arguments->stage.vehicle, "its name; required if several have one")
+  command
+      ->add_option("--vehicle", arguments->stage.vehicle,
+                   "name of the vehicle; required if several have a motion_player")
       ->type_name("NAME");
   // Inputs.
   CLI::Option* input =
