@@ -36,8 +36,8 @@ double top_mps(AutopilotActuators& actuators, const sim::CoefficientModel& model
 void check_level(AutopilotActuators& actuators, const HoldGains& attitude, const sim::DeviceContext& context) {
   const sim::HydrodynamicsConfig* water = hydrodynamics_of(context);
   const CraftAbilities craft = actuators.abilities();
-  // The waterline holds a surface craft upright, and fins in the flow a slender hull. Only hulls under thrusters
-  // alone can be turned over by the Munk moment.
+  // The waterline holds a surface craft upright, and fins in the flow a slender hull. Only a hull that thrusters
+  // alone hold can be turned over by the Munk moment.
   if (water == nullptr || water->waterline || craft.fins) return;
   const sim::CoefficientModel model(*water, context.world.config().physics.gravity_mps2);
   double needed_radps = 0;

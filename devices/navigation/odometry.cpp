@@ -50,7 +50,7 @@ Odometry::Odometry(const Params& params, const sim::DeviceContext& context)
   wheel_radius_m_ = radius.value_m();
   track_m_ = track.value_m();
   if (!(track_m_ > 0)) refuse(context, "'track_m' is needed: its wheels are in one place");
-  // Assumed lengths may differ, as with worn tyres.  The effective track of a skid-steered rover is wider.
+  // Assumed lengths may differ, as with worn tires.  The effective track of a skid-steered rover is wider.
   const AllowedRatio miscalibrated{0.9, 1.1};
   const bool scrubs = std::any_of(vehicle.devices.begin(), vehicle.devices.end(),
                                   [](const sim::DeviceConfig& device) { return device.type == "skid_steer"; });

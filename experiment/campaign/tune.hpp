@@ -17,7 +17,7 @@ struct TuneOptions {
   bool maximize = false;           ///< the largest value is best; otherwise the smallest
   int generations = 20;
   int population = 0;     ///< points of a generation; 0: 4 + 3 ln n
-  double sigma = 0.3;     ///< first standard deviation, as a share of each range
+  double sigma = 0.3;     ///< initial standard deviation, as a fraction of each range
   std::int64_t seed = 1;  ///< of the search
 };
 

@@ -82,7 +82,7 @@ mode_t usual_rights() {
 
 namespace {
 
-/// Owner and permissions of a file as it is or as a new one would be.  Throws when it is not a regular file.
+/// Owner and permissions of an existing file, or those that a new one would get.  Throws when it is not a regular file.
 struct stat rights_of(const std::string& path, bool& is_there) {
   std::error_code error;
   struct stat status {};

@@ -77,7 +77,7 @@ class TekkotsuReader {
       return true;
     }
     if (is_word(words[0], {"condensed", "specialize"}))
-      lines_.fail(words[0], "postures for one model of robot are not supported: must be a name of an output");
+      lines_.fail(words[0], "postures for a single robot model are not supported: must be a name of an output");
     return is_other_section_ || first == "verbose";
   }
 

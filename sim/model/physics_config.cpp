@@ -181,7 +181,7 @@ void JointAxisConfig::read(ParamReader& in) {
                              number_text(*high_stop));
   in.read("motor_velocity", motor_velocity, any_number(), "speed of the motor at the start, rad/s or m/s");
   in.read("motor_max_force", motor_max_force, at_least(0), "N m, or N of a slider; 0: no motor until a device sets it");
-  in.read("damping", damping, at_least(0), "effort against the velocity, N m s/rad, or N s/m of a slider");
+  in.read("damping", damping, at_least(0), "effort against the velocity, N m s/rad, or N s/m for a slider");
   in.read("restitution", restitution, between(0, 1), "restitution at the stops");
   in.read("erp", erp, between(0, 1), "fixed, ball: error reduction of the joint, instead of the world's");
   in.read("cfm", cfm, between(0, 1), "softness of the motor");

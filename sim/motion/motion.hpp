@@ -12,7 +12,7 @@
 
 namespace sim {
 
-/// Value of each joint by its name, in the order of the file: rad, m of a slider, or the intensity of a light.
+/// Value of each joint by its name, in the order of the file: rad, m for a slider, or the intensity of a light.
 using JointValues = std::vector<std::pair<std::string, double>>;
 
 /// Pose of a motion file, to which its keys refer by name.

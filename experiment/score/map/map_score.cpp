@@ -52,7 +52,7 @@ void CellHistory::visit_state(sim::StateArchive& archive) {
   if (archive.restoring() &&
       (frame_.width < 0 || frame_.height < 0 || frame_.width > max_map_cells || frame_.height > max_map_cells ||
        cells_.size() != frame_.size() || states_.size() != frame_.size() || changed_at_s_.size() != frame_.size()))
-    archive.fail("a history of cells whose number is not that of its map");
+    archive.fail("a cell history whose size differs from that of its map");
 }
 
 MapScores score_map(const GridMap& map, const CellHistory& truth, int tolerance, double now_s) {

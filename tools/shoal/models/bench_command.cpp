@@ -130,7 +130,7 @@ static void add_bench_command(CLI::App& app, int& exit_code) {
   command_line::set_help_end(*command, {{"shoal bench", "shoal bench sea naive --vehicles 100,1000 --measure 5",
                                          "shoal bench land --vehicles 1000 --threads 1,2,4 --csv land.csv",
                                          "shoal bench land --vehicles 100 --print-world > land.yaml"},
-                                        {{0, "success"}, {2, "wrong usage"}, {4, "no memory, or a file error"}},
+                                        {{0, "success"}, {2, "wrong usage"}, {4, "out of memory, or a file error"}},
                                         notes});
   // Action.
   command->callback([arguments, &exit_code] {

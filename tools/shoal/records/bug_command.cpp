@@ -49,7 +49,8 @@ static void add_bug_command(CLI::App& app, int& exit_code) {
       ->check(whole_from(1, 4096))
       ->capture_default_str();
   command->add_flag_callback(
-      "--no-files", [options] { options->files = false; }, "store hashes of the files that the world names, no copies");
+      "--no-files", [options] { options->files = false; },
+      "store only hashes, not copies, of the files that the world names");
   command->add_option("--out", options->out, "the archive; unset: RUN/bug.tar.gz")->type_name("FILE");
   // End of the help and action.
   command_line::set_help_end(

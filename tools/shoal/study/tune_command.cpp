@@ -116,7 +116,7 @@ static void add_tune_command(CLI::App& app, int& exit_code) {
       ->add_option("--population", options.population, "points of a generation; 0: 4 + 3 ln of the number of factors")
       ->type_name("N")
       ->check(whole_from(0, 1000));
-  command->add_option("--sigma", options.sigma, "first standard deviation, as a share of each range")
+  command->add_option("--sigma", options.sigma, "initial standard deviation, as a fraction of each range")
       ->type_name("SHARE")
       ->check(number_from(0.001, 1));
   command->add_option("--search-seed", options.seed, "seed of the search")

@@ -132,7 +132,7 @@ std::string UrdfElement::text(const char* attribute) const {
   if (!has(attribute)) refuse(fmt::format("<{}> needs the attribute '{}'", name(), attribute));
   const std::string value = element_->Attribute(attribute);
   if (value.find("${") != std::string::npos || value.find("$(") != std::string::npos)
-    refuse(fmt::format("'{}' is an expression of xacro, {}: run `xacro FILE > robot.urdf` first", attribute,
+    refuse(fmt::format("'{}' is a xacro expression, {}: run `xacro FILE > robot.urdf` first", attribute,
                        shown_text(value)));
   return value;
 }
