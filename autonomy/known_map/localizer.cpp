@@ -278,7 +278,7 @@ void Localizer::resample() {
                  static_cast<int>(std::floor(sim::wrap_angle(pose.yaw_rad) / bin_rad))});
     drawn.push_back({pose});
   }
-  // Those from the whole map come on top, up to the largest number.
+  // Particles from the whole map are added, up to the maximum number.
   if (share > 0) {
     const auto count = static_cast<std::size_t>(share * static_cast<double>(max));
     drawn.resize(std::min(drawn.size(), max - count));

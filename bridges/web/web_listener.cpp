@@ -428,7 +428,7 @@ void WebListener::Impl::open(const ListenOptions& options) {
     if (error != net::error::address_in_use) break;
   }
   if (acceptors.empty())
-    throw WebError("cannot listen at " + options.addresses.front() + ", port " + std::to_string(options.port) +
+    throw WebError("cannot listen on " + options.addresses.front() + ", port " + std::to_string(options.port) +
                    (error == net::error::address_in_use && options.port_tries > 1
                         ? " and the next " + std::to_string(options.port_tries - 1)
                         : "") +

@@ -20,7 +20,7 @@ namespace bridges {
 
 /// Settings of a WebServer.
 struct WebOptions {
-  std::string host = "127.0.0.1";    ///< address or name to listen at; the default listens at ::1 too, where it exists
+  std::string host = "127.0.0.1";    ///< address or name to listen on; the default listens on ::1 too, where it exists
   std::uint16_t port = 8765;         ///< first port to try; 0: any free one
   int port_tries = 20;               ///< number of ports to try: the next one if a port is taken
   std::string token;                 ///< what a page needs to steer; empty: 128 random bits

@@ -67,7 +67,7 @@ Gateway::Gateway(const Params& params, const sim::DeviceContext& context)
   for (const std::string& name : params.destinations) {
     if (name == context.vehicle.name()) fail("'destinations' names its own vehicle");
     if (!name.empty() && named_vehicle(context.world, name) == nullptr)
-      fail("'destinations' names no vehicle of the world '" + name + "'");
+      fail("'destinations' names a vehicle that is not in the world: '" + name + "'");
   }
 }
 

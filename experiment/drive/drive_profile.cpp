@@ -60,8 +60,8 @@ void DriveProfile::PadAxis::read(sim::ParamReader& in) {
   in.require("axis");
   in.read_choice("axis", axis, drive_axis_words, "axis that it moves");
   in.read("scale", scale, sim::between(-1, 1), "share of full deflection; negative: reversed");
-  in.read("low", low, sim::between(-2147483648.0, 2147483647.0), "lowest value, if the device does not tell it");
-  in.read("high", high, sim::between(-2147483648.0, 2147483647.0), "highest value, if the device does not tell it");
+  in.read("low", low, sim::between(-2147483648.0, 2147483647.0), "lowest value, if the device does not report it");
+  in.read("high", high, sim::between(-2147483648.0, 2147483647.0), "highest value, if the device does not report it");
   if (!in.describing() && !(low < high)) in.error("high", "'high' must be above 'low'");
 }
 

@@ -115,7 +115,7 @@ ProgramDeclaration read_declaration_file(const std::string& path, Diagnostics& d
       name.substr(0, name.size() - std::min(name.size(), std::string_view(declaration_ending).size()));
   if (diagnostics.ok() && name == program + declaration_ending && declaration.program != program)
     diagnostics.error(whole, "",
-                      "'program' must be '" + shortened(printable(program)) + "', as the file is called, got '" +
+                      "'program' must be '" + shortened(printable(program)) + "', the name of the file, got '" +
                           shortened(printable(declaration.program)) + "'");
   return declaration;
 }

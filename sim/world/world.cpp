@@ -72,7 +72,7 @@ void keep_leaps(WorldParts& parts) {
 
 /// Returns where to measure the work of this step; null: not.
 SharedWork* work_to_measure(const WorldParts& parts) {
-  constexpr std::int64_t steps_between = 61;  // no multiple of the periods of sensors
+  constexpr std::int64_t steps_between = 61;  // not a multiple of any usual sensor period
   const ThreadPool* const threads = parts.schedule.threads();
   const bool due = threads != nullptr && threads->threads() > 1 && parts.clock.step_number % steps_between == 0;
   return due ? parts.shared_work : nullptr;

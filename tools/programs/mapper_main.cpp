@@ -31,7 +31,7 @@ struct State {
   std::int64_t next_map_utime = 0;
 };
 
-/// Longest and total CPU time of a scan, for --timing: no part of the state, because nothing depends on it.
+/// Longest and total CPU time of a scan, for --timing: not part of the state, because nothing depends on it.
 struct Timing {
   double total_s = 0, max_s = 0;
   std::int64_t scans = 0;

@@ -38,7 +38,7 @@ int plan(const Options& options) {
   // A single write, because the programs of a run share a terminal.
   std::cerr << fmt::format("{}: {} goals reached, {} given up, {} paths planned{}\n", options.name, planner.reached(),
                            planner.given_up(), planner.plans(),
-                           planner.has_map() ? "" : "; no map came on " + prefix + options.map);
+                           planner.has_map() ? "" : "; no map arrived on " + prefix + options.map);
   if (planner.has_map() && planner.used_scans() == 0)
     std::cerr << fmt::format(
         "{}: no scan on {}lidar matched the time of an estimate on {}{}: it planned with the map alone\n", options.name,

@@ -120,7 +120,7 @@ static void add_replay_command(CLI::App& app, int& exit_code) {
         {1, "different; with --play only when --compare was given"},
         {2, "wrong usage, or a mistake in the world"},
         {4, "the log lacks data that a replay needs, or a file or bus error"},
-        {5, "with --play: no program came, or one did not answer in time"},
+        {5, "with --play: no program connected, or one did not answer in time"},
         {130, "ended by Ctrl-C"}},
        {"With --play the messages of a record are sent to programs as in its run: in lockstep to those that join, and "
         "on the bus to those that only listen. What they publish changes nothing; it is compared with the record."}});
