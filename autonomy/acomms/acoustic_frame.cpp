@@ -220,6 +220,7 @@ std::optional<Bytes> encode(const AcousticOrder& order) {
 std::optional<AcousticOrder> decode_order(std::span<const std::uint8_t> bytes, std::int64_t near_utime) {
   if (bytes.size() != order_bytes) return std::nullopt;
   Reader in(bytes);
+  // The first byte tells version and kind; frames of others on the same channel end here.
   if (in.unsigned_number(1) != (version << 4 | order_kind) || !has_good_checksum(bytes)) return std::nullopt;
   AcousticOrder order;
   order.sender = static_cast<int>(in.unsigned_number(1));

@@ -87,17 +87,17 @@ inline constexpr int refusing_state_kind = 3;
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Encodes a state.  Returns nothing when the state is out of range: a sender outside of 0 to 255, a depth outside of
-/// -0.005 m to 167 km (a small negative one is 0), a position beyond 21 000 km, a standard deviation or speed below 0,
-/// an order outside of 0 to 255, a refused one without a reason or a reason without one, or NaN or infinity.
+/// Encodes a state.  Returns std::nullopt if the state is out of range: a sender outside of 0 to 255, a depth outside
+/// of -0.005 m to 167 km (a small negative one is 0), a position beyond 21 000 km, a standard deviation or speed below
+/// 0, an order outside of 0 to 255, a refused one without a reason or a reason without one, or NaN or infinity.
 std::optional<Bytes> encode(const AcousticState& state);
 
-/// Decodes a state.  Returns nothing for a wrong length, version, kind or checksum, standard deviations of zero, or
-/// values that encode() would not send.  `near_utime`: a time within half a week of the sender's, which completes the
-/// time of the week.
+/// Decodes a state.  Returns std::nullopt for a wrong length, version, kind or checksum, standard deviations of zero,
+/// or values that encode() would not send.  `near_utime`: a time within half a week of the sender's, which completes
+/// the time of the week.
 std::optional<AcousticState> decode(std::span<const std::uint8_t> bytes, std::int64_t near_utime);
 
-/// Encodes an order.  Returns nothing when sender, receiver, number, position or depth are out of their ranges as
+/// Encodes an order.  Returns std::nullopt if sender, receiver, number, position or depth are out of their ranges as
 /// above, the speed is outside of 0.01 to 655.35 m/s, or a value is NaN or infinite.
 std::optional<Bytes> encode(const AcousticOrder& order);
 

@@ -18,7 +18,7 @@ class Avoidance {
       : law_(std::move(law)), tracks_(tracks) {}
 
   void receive(const Scan& scan, const Motion& own) { tracks_.receive(scan, own); }
-  /// Returns `desired`, turned as far as the law requires it.  Without a heading it is not changed.
+  /// Returns `desired`, turned by the avoidance law if necessary.  Without a heading it is unchanged.
   Course steer(const Motion& own, const Course& desired);
 
  private:

@@ -11,10 +11,10 @@
 
 namespace autonomy {
 
-/// What a law of avoidance must know of its vehicle.
+/// Properties of the vehicle that an avoidance law needs.
 struct AvoidanceParams {
   double keep_m = 3;         ///< distance between the middle of the vehicle and the edge of an obstacle
-  double horizon_s = 15;     ///< time that it looks ahead
+  double horizon_s = 15;     ///< look-ahead time
   double turn_radps = 0.3;   ///< rate of turn
   double speed_time_s = 3;   ///< time constant of the speed
   double speed_min_mps = 0;  ///< slowest speed at which it can be steered

@@ -20,7 +20,7 @@ class DriftEstimate {
   static constexpr double steady_after_s = 5;
   static constexpr double max_mps = 1;
 
-  /// To be called at each decision, before it, with the time, motion and heading at it.
+  /// Call before each decision, with its time, motion and heading.
   void update(const Motion& own) {
     const double dt_s = utime_ ? seconds(own.utime - *utime_) : 0;
     utime_ = own.utime;
@@ -32,7 +32,7 @@ class DriftEstimate {
     drift_W_ += std::min(1.0, dt_s / time_s) * (seen_W - drift_W_);
     if (drift_W_.norm() > max_mps) drift_W_ *= max_mps / drift_W_.norm();
   }
-  /// To be called after each decision.
+  /// Call after each decision.
   void command(const Course& command) {
     changed_ = std::abs(command.speed_mps - command_.speed_mps) > speed_change_mps;
     command_ = command;

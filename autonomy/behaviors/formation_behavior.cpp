@@ -37,7 +37,7 @@ void FormationBehavior::receive_state(const std::string& vehicle, const Motion& 
 }
 
 std::string FormationBehavior::remark() const {
-  return leader_ ? "" : "it has not received any message from '" + params_.leader + "', the leader of its formation";
+  return leader_ ? "" : "it has received no message from '" + params_.leader + "', the leader of its formation";
 }
 
 std::optional<Vector2d> FormationBehavior::place_W(std::int64_t utime) const {

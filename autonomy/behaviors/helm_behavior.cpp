@@ -74,7 +74,7 @@ void FollowBehavior::receive_state(const std::string& vehicle, const Motion& oth
 }
 
 std::string FollowBehavior::remark() const {
-  return other_ ? "" : "it has not received any message from '" + params_.vehicle + "', which it was to follow";
+  return other_ ? "" : "it has received no message from '" + params_.vehicle + "', which it was to follow";
 }
 
 std::optional<Vector2d> FollowBehavior::place_W(std::int64_t utime) const {

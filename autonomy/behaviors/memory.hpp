@@ -26,7 +26,7 @@ class Memory {
     if (keep_us_ > 0) copies_.push_back({std::numeric_limits<std::int64_t>::min(), copy_()});
   }
 
-  /// To be called after the decision of the tick `utime`, which is later than the last one.
+  /// Call after the decision of the tick `utime`, which is later than the last one.
   void keep(std::int64_t utime);
   /// Restores the state after a rewind of the world, where the tick `utime` is the first one: the state after the last
   /// decision before it.  Returns false, with the state unchanged, when there is no such copy.

@@ -48,6 +48,8 @@ bool ObstacleAvoidance::choose_direction(const Vector2d& goal_B, const Scan& sca
 }
 
 Twist ObstacleAvoidance::turn_out(const Scan& scan) {
+  // The side is chosen once and kept until the way is free: choosing again at every scan, the rover would turn back and
+  // forth.
   if (turning_out_ == 0) {
     double left_m = 0;
     double right_m = 0;

@@ -48,11 +48,13 @@ void ObstacleTracks::update(Track& track, const Group& group, std::int64_t utime
   ++track.hits;
   track.alone = group.alone;
   track.obstacle.radius_m = group.radius_m;
+  // Part of a wall or of several things: its center jumps with what is seen of it, which would look like a motion.
   if (!group.alone) {
     track.obstacle.p_W = group.p_W;
     track.obstacle.v_W.setZero();
     return;
   }
+  // Alpha-beta filter (Bar-Shalom, Li and Kirubarajan 2001, 6.5).
   const Vector2d predicted_W = track.obstacle.p_W + track.obstacle.v_W * dt_s;
   const Vector2d residual_W = group.p_W - predicted_W;
   track.obstacle.p_W = predicted_W + params_.alpha * residual_W;

@@ -71,8 +71,12 @@ Course VelocityObstacles::steer(const Motion& own, const Vector2d& drift_W, cons
       const Course control{speed_mps, sim::wrap_angle(desired.heading_rad + turn_rad), desired.distance_m};
       const double s = speed_mps / desired.speed_mps;
       double cost = (turned({s, 0}, turn_rad) - Vector2d(1, 0)).norm();
+      // To starboard if nothing speaks against it: two vehicles with this preference pass each other (COLREGs, rule
+      // 14).
       cost += turn_rad > 0 ? port_weight : 0.0;
+      // Without the habit it would dither between two sides of equal cost.
       cost += habit_weight * std::abs(sim::wrap_angle(turn_rad - last_turn_rad_)) / std::numbers::pi;
+      // The other terms only add to the cost, so most courses are ruled out before the expensive prediction.
       if (cost >= lowest) continue;
       const Outcome result = outcome(own, drift_W, control, obstacles);
       cost += collision_weight_s / result.collision_s;

@@ -21,7 +21,7 @@ class VelocityObstacles final : public AvoidanceLaw {
                std::span<const Obstacle> obstacles) override;
   std::unique_ptr<AvoidanceLaw> clone() const override { return std::make_unique<VelocityObstacles>(*this); }
 
-  /// What follows from a control.
+  /// Predicted outcome of a control.
   struct Outcome {
     double collision_s;  ///< time when it comes too close; infinity: it does not
     double clearance_m;  ///< smallest distance to the edge of an obstacle beyond `keep_m`

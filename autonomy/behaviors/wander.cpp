@@ -13,7 +13,7 @@ Twist Wander::step(const Scan& scan) {
   const bool turning = turn_left_ > 0;
   if (turning) --turn_left_;
   Twist twist{turning ? turning_forward_mps : forward_mps, turning ? turn_radps : 0.0};
-  // It also turns when it has stopped; otherwise it would stop forever.
+  // The rover also turns when it has stopped, or it would stand still forever.
   if (close) twist.forward_mps = 0;
   return twist;
 }

@@ -27,6 +27,7 @@ Vector2d WaypointFollower::goal_B(const Pose2& pose, double now_s) {
     nearest_m_ = distance_m;
     nearest_at_s_ = now_s;
   } else if (now_s - nearest_at_s_ > params_.give_up_s) {
+    // A waypoint inside of an obstacle must not hold up the rest of the route.
     ++given_up_;
     next(now_s);
   }

@@ -26,6 +26,8 @@ void Ekf::predict(const Increment& move) {
   R_WB.topLeftCorner<2, 2>() << c, -s, s, c;
 
   const double distance_m = std::hypot(move.forward_m, move.left_m);
+  // Variances grow in proportion to distance and turn, so the result does not depend on how often odometry is
+  // reported.
   Eigen::Matrix3d Q_B = Eigen::Matrix3d::Zero();
   Q_B.diagonal() << squared(params_.along_std_m) * distance_m, squared(params_.across_std_m) * distance_m,
       squared(params_.yaw_per_turn_std_rad) * std::abs(move.turn_rad) +

@@ -269,7 +269,7 @@ void MarineEkf::open_clock(const ClockError& error) {
   P_(4, 4) = squared(error.now_m) + error.variance_m2;
   if (params_.states <= 5) return;
   P_(5, 5) = std::max(P_(5, 5), squared(error.rate_mps));
-  // It was correct before: the clock drifts.
+  // Earlier ranges fitted, so the clock must drift.
   if (ranges_used_ > 0) P_(5, 5) = std::max(P_(5, 5), squared(bad_clock_mps));
 }
 

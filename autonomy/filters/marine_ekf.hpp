@@ -44,11 +44,11 @@ class MarineEkf {
     double speed_scale_walk = 1e-5;
     double range_bias_walk_m = 0.01;
     double range_drift_walk_mps = 1e-5;
-    /// With two states the biases are modeled as noise that changes at this interval.
+    /// In a filter of two states the biases are modeled as noise that changes at this interval.
     double bias_as_noise_s = 60;
 
     double range_gate = 10.83;     ///< squared innovation over its variance: 99.9 % of chi-square with 1 degree
-    double position_gate = 13.82;  ///< the same with 2 degrees
+    double position_gate = 13.82;  ///< the same with 2 degrees of freedom
     int max_refusals = 5;          ///< consecutive ones, before a state is considered wrong instead of the measurement
   };
   struct Range {

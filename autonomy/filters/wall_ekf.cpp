@@ -21,8 +21,10 @@ std::optional<WallHit> first_wall(const std::vector<Wall>& walls, const Vector2d
   for (const Wall& wall : walls) {
     const Vector2d along_W = wall.to_W - wall.from_W;
     const double length_m = along_W.norm();
+    // Near an end a beam may miss the wall or see its edge, and the range would fit neither.
     if (!(length_m > 2 * margin_m)) continue;
     Vector2d normal_W = left_of(along_W) / length_m;
+    // Walls are seen from both sides.
     if (normal_W.dot(from_W - wall.from_W) < 0) normal_W = -normal_W;
     const double closing = -normal_W.dot(v_W);
     if (closing <= 0) continue;
@@ -56,6 +58,7 @@ void WallEkf::predict(double dt_s, double gyro_yaw_rad, double speed_mps, double
   const Vector2d v_W = speed_mps * u_W + slip_mps * left_of(u_W);
   x_.head<2>() += (v_W + current_W()) * dt_s;
   Covariance F = Covariance::Identity();
+  // A heading error moves the vehicle sideways, and the unknown current along with the water.
   F.block<2, 1>(0, 2) = dt_s * left_of(v_W);
   F.block<2, 2>(0, 3) = dt_s * Eigen::Matrix2d::Identity();
   P_ = F * P_ * F.transpose();

@@ -14,7 +14,7 @@ struct Wall {
   Vector2d from_W, to_W;
 };
 
-/// Returns the first wall that a horizontal ray meets, with its range; nothing when it meets none.  A hit within
+/// Returns the first wall that a horizontal ray meets, with its range; std::nullopt if it meets none.  A hit within
 /// `margin_m` of the end of a wall counts as none: a wide beam may miss it.
 struct WallHit {
   double range_m;

@@ -45,6 +45,7 @@ GridFrame frame_of(const shoal::occupancy_grid_t& map) {
   constexpr double max_cells = 16e6, farthest_m = 1e7;
   const double cells = static_cast<double>(map.width) * map.height;
   if (map.width < 1 || map.height < 1 || cells > max_cells || cells != map.ncells)
+    // The map comes from another program; the limits bound memory and time.
     throw shoal::MessageError(
         fmt::format("'ncells' must be width * height, above 0 and at most {:g}, got {} of {} x {}", max_cells,
                     map.ncells, map.width, map.height));
@@ -57,6 +58,8 @@ GridFrame frame_of(const shoal::occupancy_grid_t& map) {
 }
 
 std::vector<float> distances_m(const GridFrame& frame, const std::vector<char>& marked) {
+  // Squared distances separate by axes: a pass over the columns and one over the rows, each linear in the number of
+  // cells (Felzenszwalb and Huttenlocher 2012).
   std::vector<double> squares(frame.size());
   for (std::size_t i = 0; i < squares.size(); ++i) squares[i] = marked[i] != 0 ? 0 : far;
   const auto pass = [&](int lines, int length, std::size_t line_step, std::size_t step) {

@@ -80,9 +80,12 @@ LikelihoodField::End LikelihoodField::end_of(const Vector2d& sensor_W, const Vec
     const int column = frame_.column_of(p_W.x()), row = frame_.row_of(p_W.y());
     return frame_.contains(column, row) ? known_[frame_.index(column, row)] : 0;
   };
+  // An end in a known cell can be judged by the likelihood field.
   if (known_at(end_W) != 0) return End::known;
   const Vector2d ray_W = end_W - sensor_W;
   const double length_m = ray_W.norm();
+  // A beam that passes through a known wall contradicts the pose, except near its end, where the wall may be drawn
+  // thick.
   for (double at_m = 0; at_m < length_m - before_end_m; at_m += frame_.cell_m)
     if (known_at(sensor_W + at_m / length_m * ray_W) == 2) return End::behind;
   return End::nowhere;
@@ -94,6 +97,7 @@ Localizer::Localizer(std::shared_ptr<const LikelihoodField> field, const Params&
   particles_.resize(static_cast<std::size_t>(params_.max_particles));
   for (Particle& each : particles_) {
     each.pose = any_pose();
+    // Without a start the particles are spread over the whole free space (global localization).
     if (!params_.start) continue;
     each.pose = *params_.start;
     for (double* x : {&each.pose.p_W.x(), &each.pose.p_W.y()}) *x += params_.start_std_m * random_.gaussian();
@@ -181,6 +185,7 @@ std::optional<double> Localizer::fit() const {
   }
   const auto all = static_cast<double>(points_B_.size());
   if (behind > nearly_all * all) return other_likelihood;
+  // Too few beams end in the known part of the map to judge the pose.
   if (points_B_.size() < min_points || known < enough_known * all) return std::nullopt;
   return sum / known;
 }
@@ -273,7 +278,7 @@ void Localizer::resample() {
                  static_cast<int>(std::floor(sim::wrap_angle(pose.yaw_rad) / bin_rad))});
     drawn.push_back({pose});
   }
-  // Those from the whole map come on top, up to the largest number.
+  // Particles from the whole map are added, up to the maximum number.
   if (share > 0) {
     const auto count = static_cast<std::size_t>(share * static_cast<double>(max));
     drawn.resize(std::min(drawn.size(), max - count));

@@ -42,7 +42,7 @@ struct MapKeys {
     if (free_thresh > occupied_thresh)
       in.error("free_thresh", fmt::format("'free_thresh' must be at most 'occupied_thresh', {}, got {}",
                                           occupied_thresh, free_thresh));
-    if (in.has("origin") && origin.z() != 0) in.error("origin", "'origin' must not be turned");
+    if (in.has("origin") && origin.z() != 0) in.error("origin", "'origin' must have yaw 0");
   }
 };
 
@@ -63,6 +63,7 @@ sim::Image16 levels_of(const std::string& path) {
   if (!file) throw std::invalid_argument(path + ": cannot be read");
   const std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   try {
+    // The size is checked before the image is decoded: a small file can claim a huge one.
     return sim::decode_png_levels(std::as_bytes(std::span(bytes)), [](std::uint64_t width, std::uint64_t height) {
       if (static_cast<double>(width) * static_cast<double>(height) > max_cells)
         throw sim::ImageError(fmt::format("must have at most {:g} pixels, got {} x {}", max_cells, width, height));

@@ -156,7 +156,7 @@ Path search_path(const PlanGrid& grid, const Vector2d& from_W, const Vector2d& t
   const Search search(grid, from_W, costs);
   if (const double clearance_m = grid.clearance_at(to_W); clearance_m < costs.keep_m)
     return {{}, fmt::format("the goal is {:.2f} m from an obstacle, and must be {:.2f} m", clearance_m, costs.keep_m)};
-  if (grid.unknown[*goal] != 0 && !costs.enters_unknown) return {{}, "the goal is on unknown ground"};
+  if (grid.unknown[*goal] != 0 && !costs.enters_unknown) return {{}, "the goal is in unknown space"};
   std::vector<Vector2d> points_W;
   for (const std::size_t cell : search.cells(*start, *goal)) {
     const auto columns = static_cast<std::size_t>(frame.columns);
@@ -166,6 +166,7 @@ Path search_path(const PlanGrid& grid, const Vector2d& from_W, const Vector2d& t
     return {{},
             fmt::format("no gap on the path{} is {:.2f} m wide", costs.enters_unknown ? "" : " on known ground",
                         2 * costs.keep_m)};
+  // Search moves between centers of cells; the path begins at the vehicle and ends at the goal itself.
   points_W.front() = from_W;
   if (points_W.size() == 1) points_W.push_back(to_W);
   points_W.back() = to_W;

@@ -8,7 +8,7 @@
 
 namespace autonomy {
 
-/// What a vehicle drives through.
+/// Space that a vehicle drives through.
 struct PlanGrid {
   GridFrame frame;
   std::vector<float> clearance_m;  ///< distance to the nearest obstacle

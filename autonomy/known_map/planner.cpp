@@ -24,7 +24,7 @@ void Planner::receive(const shoal::occupancy_grid_t& map) {
   const int side = std::max(1, static_cast<int>(std::lround(params_.cell_m / fine.cell_m)));
   CoarseMap coarse{{fine.origin_W, side * fine.cell_m, (fine.columns + side - 1) / side, (fine.rows + side - 1) / side},
                    {}};
-  // Of the cells in one: occupied before unknown before free.
+  // The worst of the cells merged into one wins: occupied before unknown before free.
   coarse.cells.assign(coarse.frame.size(), 0);
   for (int row = 0; row < fine.rows; ++row)
     for (int column = 0; column < fine.columns; ++column) {
@@ -108,6 +108,7 @@ PlanGrid Planner::grid() const {
       const std::size_t cell = grid.frame.index(column, row);
       const int percent = seen_ ? seen_->percent(column, row, now_s) : OccupancyMap::unknown_percent;
       const bool is_seen = percent >= occupied_percent || (percent >= 0 && percent <= free_percent);
+      // What the lidar has seen counts before the map, which may be old.
       occupied[cell] = (is_seen ? percent >= occupied_percent : map_->cells[cell] == 1) ? 1 : 0;
       grid.unknown[cell] = !is_seen && map_->cells[cell] < 0 ? 1 : 0;
     }
@@ -132,6 +133,8 @@ Planner::Decision Planner::step(std::int64_t utime) {
   const double variance_m2 = estimate_->covariance_m2[0] + estimate_->covariance_m2[4];
   const Pose2 pose{{estimate_->position_m[0], estimate_->position_m[1]}, estimate_->yaw_rad};
   if (!(variance_m2 < 2 * squared(params_.lost_std_m)) || !pose.p_W.allFinite()) {
+    // What was seen shortly before is doubtful, too: the vehicle may have been lost already and have put it at wrong
+    // places.
     if (!seen_before_.empty()) seen_ = seen_before_.front();
     seen_before_.clear();
     scans_.clear();
@@ -167,6 +170,7 @@ Planner::Decision Planner::plan(std::int64_t utime, const Vector2d& p_W, const P
   is_due_ = false;
   tried_utime_ = utime;
   if (path.points_W.empty()) {
+    // The same failure is reported once, not at every retry.
     if (no_path_since_ && path.why_none == why_none_) return {};
     if (!no_path_since_) no_path_since_ = utime;
     why_none_ = path.why_none;

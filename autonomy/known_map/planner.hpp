@@ -38,7 +38,7 @@ class Planner {
     double retry_s = 5;             ///< after which it plans again when there was no path
     double give_up_s = 120;         ///< a goal is given up after this time without a path
   };
-  /// What to publish and to report.
+  /// Result of a step: what to publish and to report.
   struct Decision {
     std::optional<shoal::waypoints_command_t>
         path;          ///< the new one; one point: it is to look around there; none: to stand

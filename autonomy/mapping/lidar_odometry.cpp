@@ -15,6 +15,7 @@ Beams beams_of(const shoal::planar_lidar_t& scan, const LidarMount& lidar) {
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     const double range_m = static_cast<double>(scan.ranges[i]);
     if (!(range_m > 0)) continue;
+    // A range of nearly the maximum is a miss: the scanner reports that value for it.
     const bool hit = range_m < 0.99 * lidar.range_m && range_m <= lidar.use_range_m;
     const double angle_rad =
         static_cast<double>(scan.rad0) + static_cast<double>(i) * static_cast<double>(scan.radstep);
@@ -62,6 +63,7 @@ shoal::estimate_t planar_estimate(std::int64_t utime, const Pose2& pose, const E
   message.position_m[1] = pose.p_W.y();
   for (int row = 0; row < 2; ++row)
     for (int column = 0; column < 2; ++column) message.covariance_m2[3 * row + column] = covariance_m2(row, column);
+  // The height is unknown, but the covariance must be positive definite.
   message.covariance_m2[8] = 1;
   message.yaw_rad = pose.yaw_rad;
   message.clock_error_s = unknown;

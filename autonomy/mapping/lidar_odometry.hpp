@@ -22,7 +22,7 @@ struct Beams {
 /// How a lidar is mounted and used.
 struct LidarMount {
   Pose2 pose;               ///< of the lidar on the vehicle
-  double range_m = 20;      ///< a beam of this length has met nothing
+  double range_m = 20;      ///< a beam of at least this length is taken as a miss
   double use_range_m = 15;  ///< longer beams only clear this length
 };
 

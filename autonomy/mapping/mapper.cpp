@@ -124,7 +124,7 @@ void Mapper::search(const Beams& beams, const Increment& by) {
   predict(by);
   search_.move(by);
   if (beams.points_B.size() < min_judged_points) return;
-  // It may be where it was: something large that is new stood before the lidar.
+  // The vehicle may still be where it was, with something large and new in front of the lidar.
   const ScanMatch here = matcher_.match(map_, beams.points_B, pose_, loose_covariance().inverse());
   std::optional<Pose2> found;
   if (fit_of(map_, beams, here.pose).evidence() >= params_.certain_evidence)
@@ -153,7 +153,7 @@ void Mapper::survey(const Beams& beams) {
   }
   if (last > 0) {
     Alignment by_odometry{since_survey_, Eigen::Matrix3d::Zero()};
-    // Its errors are the same in each step, so that they do not average out.
+    // The errors of odometry are the same in each step, so that they do not average out.
     const OdometryStd std = std_of({3 * since_survey_.p_W.norm(), 0, since_survey_.yaw_rad});
     by_odometry.information.diagonal() << 1 / squared(std.m), 1 / squared(std.m), 1 / squared(std.rad);
     graph_.add_measurement(static_cast<int>(last) - 1, static_cast<int>(last), by_odometry);
@@ -195,9 +195,11 @@ void Mapper::survey(const Beams& beams) {
 bool Mapper::close_loop(std::size_t other) {
   constexpr double gate_m = 0.4, loop_gate_m = 1, farthest_rad = 0.3;
   const std::size_t last = surveyed_.size() - 1;
+  // After a loop the drift is larger than between neighboring scans.
   const double max_m = other + recent_scans > last ? gate_m : loop_gate_m;
   const Pose2 guess = seen_from(graph_.poses()[other], graph_.poses()[last]);
   const auto aligned = align(*surveyed_[other].outline, *surveyed_[last].outline, guess, max_m);
+  // A match far from the guess is more likely a similar wall than a large drift.
   if (!aligned) return false;
   const Pose2 off = seen_from(guess, aligned->pose);
   if (off.p_W.norm() > max_m || std::abs(off.yaw_rad) > farthest_rad) return false;
@@ -234,7 +236,7 @@ void Mapper::insert(const Beams& beams, const Pose2& pose, std::int64_t utime) {
 }
 
 shoal::estimate_t Mapper::estimate() const {
-  // At least that of the grid; lost, it can be anywhere in the map.
+  // The covariance is at least that of the grid; a lost vehicle can be anywhere in the map.
   constexpr double grid_std_m = 0.02, lost_std_m = 10;
   const double std_m = lost_ ? lost_std_m : grid_std_m;
   return planar_estimate(utime_, pose_,

@@ -73,7 +73,7 @@ class Mapper {
     std::shared_ptr<const Beams> beams;
     std::shared_ptr<const Outline> outline;
     std::int64_t utime = 0;
-    Pose2 drawn;  ///< pose with which it is in the map
+    Pose2 drawn;  ///< pose at which it was drawn into the map
   };
   /// Moves pose and covariance by odometry.
   void predict(const Increment& moved);

@@ -22,6 +22,7 @@ void MeanScan::add(const shoal::planar_lidar_t& scan) {
     return;
   constexpr double max_off_m = 0.2;
   const Eigen::ArrayXd off_m = ranges_of(scan) - ranges_of(*first_);
+  // A beam at an edge jumps between two surfaces; only readings near the first one are averaged.
   const auto counts = off_m.abs() <= max_off_m;
   off_m_ += counts.select(off_m, 0);
   counts_ += counts.cast<int>();
@@ -34,6 +35,7 @@ std::optional<shoal::planar_lidar_t> MeanScan::scan() const {
   shoal::planar_lidar_t scan = *first_;
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     const auto beam = static_cast<Eigen::Index>(i);
+    // A beam that saw something else too often is dropped (range 0).
     scan.ranges[i] = counts_[beam] < min_share * count_
                          ? 0
                          : static_cast<float>(static_cast<double>(scan.ranges[i]) + off_m_[beam] / counts_[beam]);

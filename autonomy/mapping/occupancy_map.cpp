@@ -30,6 +30,7 @@ OccupancyMap::OccupancyMap(const Params& params) : params_(params) {
   tile_columns_ = (columns_ + tile_cells - 1) / tile_cells;
   tiles_.resize(static_cast<std::size_t>(tile_columns_) *
                 static_cast<std::size_t>((rows_ + tile_cells - 1) / tile_cells));
+  // A map that forgets stores 2p - 1 = tanh(log odds / 2), which decays towards 0, unknown.
   const auto unit = [&](double log_odds) {
     return static_cast<float>(params.forgets ? std::tanh(0.5 * log_odds) : log_odds);
   };
@@ -38,6 +39,8 @@ OccupancyMap::OccupancyMap(const Params& params) : params_(params) {
   limit_ = unit(params.max_log_odds);
   becomes_occupied_ = unit(0.6);
   becomes_free_ = unit(-0.2);
+  // Likelihood field (Thrun, Burgard and Fox 2005, 6.4): a Gaussian of the distance to the nearest occupied cell, in
+  // steps of 1/255.
   kernel_.resize(reach + 1);
   for (int i = 0; i <= reach; ++i)
     for (int k = 0; k <= reach; ++k) {
@@ -215,6 +218,7 @@ void OccupancyMap::update_field() {
           value = std::max(value, kernel(c - column, r - row));
           continue;
         }
+        // A cell that became free may have been the nearest one of its neighbors, which now look for the next.
         value = 0;
         for (int dr = -reach; dr <= reach; ++dr)
           for (int dc = -reach; dc <= reach; ++dc)

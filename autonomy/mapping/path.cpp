@@ -40,6 +40,7 @@ OnPath nearest_on(const std::vector<Vector2d>& path_W, const Vector2d& p_W) {
   double nearest_m = (path_W.front() - p_W).norm();
   for (std::size_t i = 0; i + 1 < path_W.size(); ++i) {
     const Vector2d along = path_W[i + 1] - path_W[i];
+    // Two equal points in a row have no direction.
     const double share = std::clamp(along.dot(p_W - path_W[i]) / std::max(1e-12, along.squaredNorm()), 0.0, 1.0);
     const Vector2d at_W = path_W[i] + share * along;
     if (const double distance_m = (at_W - p_W).norm(); distance_m < nearest_m) {

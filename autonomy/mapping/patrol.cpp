@@ -51,7 +51,7 @@ Pose2 Patrol::present_pose() const {
 }
 
 Twist Patrol::step(std::int64_t utime) {
-  // It needs a pose and a scan of the last periods.
+  // A decision needs a pose and a scan of the last periods.
   if (!estimate_ || odometry_.empty() || scan_.ranges_m.empty()) return {};
   const std::int64_t newest = odometry_.back().first;
   if (newest != newest_utime_) {
@@ -83,6 +83,7 @@ Twist Patrol::to_waypoint(std::int64_t utime) {
     const bool reached = follower_->reached() > reached_;
     passed_ = follower_->reached() + follower_->given_up();
     reached_ = follower_->reached();
+    // A waypoint that was given up needs no rest.
     if (!reached) return {};
     const bool charges = follower_->current() == 1 % params_.waypoints_W.size();
     rounds_ += charges && reached_ > 1 ? 1 : 0;
@@ -94,7 +95,7 @@ Twist Patrol::to_waypoint(std::int64_t utime) {
 
 Twist Patrol::steer(const Vector2d& goal_B) {
   Twist twist = avoidance_.steer(goal_B, scan_);
-  // Its gain of 1.5 /s would overshoot when a command lasts longer: two thirds of the error in a period are enough.
+  // The gain of 1.5 /s would overshoot when a command lasts longer: two thirds of the error in a period are enough.
   twist.turn_radps *= std::min(1.0, 0.67 / (1.5 * params_.period_s));
   return twist;
 }

@@ -30,7 +30,7 @@ class Patrol {
     double charge_s = 480;      ///< at the first waypoint
     double reached_m = 0.6;     ///< acceptance radius of a waypoint
     double give_up_s = 60;      ///< a waypoint is skipped after this time without progress
-    double lost_std_m = 1;      ///< standard deviation of the estimate from which on it turns on the spot
+    double lost_std_m = 1;      ///< standard deviation of the estimate above which it turns on the spot
     double search_radps = 0.4;  ///< turn rate of this, and of looking around
     double search_drive_s = 8;  ///< after each full turn it drives for this long
     double ahead_m = 1;         ///< it steers for the point of a path that is this far ahead
@@ -58,7 +58,7 @@ class Patrol {
   Twist steer(const Vector2d& goal_B);
   Twist along_path();
   Twist to_waypoint(std::int64_t utime);
-  /// What it does while the estimate is uncertain.
+  /// Phase of the patrol while the estimate is uncertain.
   Twist seek_place(std::int64_t utime);
 
   Params params_;

@@ -30,7 +30,7 @@ struct CoarseField {
   std::size_t index(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
   }
-  /// Of the square with this cell; 0 outside of the map.
+  /// Value of the square with this cell; 0 outside of the map.
   int at(int column, int row) const {
     const int c = column / side, r = row / side;
     if (column < 0 || row < 0 || c >= columns || r >= rows) return 0;
@@ -77,6 +77,7 @@ Fit fit_of(const OccupancyMap& map, const Beams& beams, const Pose2& pose, doubl
       ++near;
     else if (map.is_known(end_W))
       ++contradicting;
+    // Enough beams fit: the rest cannot change the decision.
     if (near >= enough_near * all) break;
   }
   return {near / all, contradicting / all, through / all};
@@ -95,6 +96,7 @@ void PlaceSearch::sort(std::size_t max) {
   std::vector<Candidate> kept;
   for (const Candidate& each : candidates_) {
     if (kept.size() == max) break;
+    // Matches from neighboring starting points end in one place, which is one candidate.
     const bool is_new = std::none_of(kept.begin(), kept.end(), [&](const Candidate& other) {
       return (other.pose.p_W - each.pose.p_W).norm() < same_m &&
              std::abs(sim::wrap_angle(other.pose.yaw_rad - each.pose.yaw_rad)) < same_rad;
@@ -156,6 +158,7 @@ std::optional<Pose2> PlaceSearch::look(const OccupancyMap& map, const ScanMatche
     since_view_ = {};
     return std::nullopt;
   }
+  // Scans from one place share their errors, so they count as one view.
   const bool moved = since_view_.forward_m > params_.apart_m || since_view_.turn_rad > params_.apart_rad;
   for (Candidate& each : candidates_) {
     each.pose = matcher.match(map, beams.points_B, each.pose, loose()).pose;
@@ -166,6 +169,7 @@ std::optional<Pose2> PlaceSearch::look(const OccupancyMap& map, const ScanMatche
   ++views_;
   sort(params_.candidates);
   if (views_ < params_.min_views || candidates_.front().evidence < params_.min_mean * views_) return std::nullopt;
+  // The runner-up must be clearly worse: rooms that look alike can only be distinguished by moving on.
   if (candidates_.size() > 1 && candidates_[0].evidence < candidates_[1].evidence + params_.lead) return std::nullopt;
   return candidates_.front().pose;
 }

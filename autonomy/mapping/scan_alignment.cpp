@@ -62,7 +62,7 @@ std::optional<Alignment> align(const Outline& reference, const Outline& scan, co
       gradient += weight * across_m * jacobian;
     }
     if (matched < min_points || matched < min_share * static_cast<double>(scan.points_B().size())) return std::nullopt;
-    // What the lines leave open stays as it was.
+    // Directions that the lines do not constrain keep their value.
     const Eigen::Matrix3d damped = hessian + 1e-3 * Eigen::Matrix3d::Identity();
     const Eigen::Vector3d step = damped.inverse() * gradient;
     pose.p_W -= step.head<2>();

@@ -103,7 +103,7 @@ ScanMatch ScanMatcher::match(const OccupancyMap& map, const std::vector<Vector2d
 
 Eigen::Matrix3d ScanMatcher::information_of(const OccupancyMap& map, const std::vector<Vector2d>& points_B,
                                             const Pose2& pose) const {
-  // Of the order of the width of the field.
+  // About the width of the field.
   const Eigen::Vector3d steps(0.04, 0.04, 0.005);
   const auto score = [&](const Eigen::Vector3d& off) {
     return score_of(map, points_B, {pose.p_W + off.head<2>(), pose.yaw_rad + off.z()});

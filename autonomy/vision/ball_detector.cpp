@@ -97,7 +97,7 @@ std::optional<BallSighting> BallDetector::detect(const shoal::image_t& image) {
   }
   if (largest.pixels < params_.min_pixels) return std::nullopt;
 
-  // Its direction and range.
+  // Direction and range of the ball.
   const double focal_px = width / 2.0 / std::tan(sim::degrees_to_radians(params_.fov_deg) / 2);
   const double left_px = width / 2.0 - largest.column_sum / largest.pixels;
   const double up_px = height / 2.0 - largest.row_sum / largest.pixels;

@@ -43,8 +43,11 @@ void Arrivals::arrived() {
 bool Arrivals::wait(std::chrono::milliseconds timeout) {
   using std::chrono::steady_clock;
   const auto deadline = steady_clock::now() + timeout;
+  // Nothing may stay queued while this thread sleeps: the client that is awaited may be waiting for it.
   for (const Watched& each : ports_) each.port->send_queued();
   for (std::chrono::milliseconds left = timeout;;) {
+    // The flag is set before the count is read, and publishers read it after they count: a message that comes in
+    // between wakes the wait.
     asleep_ = true;
     const bool came = count_.load() != seen_;
     const PollSet::Readable readable = came ? PollSet::Readable{} : readable_.wait(left);

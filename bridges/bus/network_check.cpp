@@ -160,6 +160,7 @@ std::set<std::string> sockets_on_port(int port) {
 bool holds_socket(const std::string& pid, const std::set<std::string>& inodes) {
   const std::string folder = "/proc/" + pid + "/fd";
   DIR* directory = opendir(folder.c_str());
+  // Processes of other users cannot be read; their sockets stay without an owner.
   if (directory == nullptr) return false;
   bool found = false;
   while (const dirent* entry = readdir(directory)) {
@@ -218,6 +219,8 @@ Finding check_port(const LcmEndpoint& endpoint) {
   }
   finding.text += "; they and this simulator receive each other's messages";
   const auto groups = other_groups(endpoint.address);
+  // liblcm 1.3 binds the port, not the group, so the kernel delivers all groups that any program on this machine has
+  // joined.
   if (groups.empty()) return finding;
   finding.verdict = Verdict::warning;
   separator = ", and there are other multicast groups (";

@@ -18,7 +18,7 @@ struct Finding {
 
 /// Checks whether LCM works on this machine with this URL (empty: the one that a run would use), and finds the reason
 /// if not.  Opens no LCM in this process: the round trip is made in a child process, because liblcm may block or abort.
-/// For a program without other threads.
+/// Only for a program without other threads.
 std::vector<Finding> check_network(const std::string& url = {},
                                    std::chrono::milliseconds time_limit = std::chrono::milliseconds(3000));
 

@@ -47,11 +47,14 @@ std::unique_ptr<OutgoingQueue::Entry> OutgoingQueue::next(std::unique_ptr<Entry>
   std::unique_lock lock(mutex_);
   if (used) finish(std::move(used));
   sender_waits_ = true;
+  // Messages are sent when the publisher ends its step, or after `max_wait` if it never does: waking the sender for
+  // each one would cost a context switch per message.
   while (sending_ || (!closed_ && (waiting_.empty() || !awake_))) {
     const bool timed_out = sender_.wait_for(lock, max_wait) == std::cv_status::timeout;
     if (timed_out && !sending_ && !waiting_.empty()) break;
   }
   sender_waits_ = false;
+  // A closed bus gets a grace period to send what is queued, so that the last messages of a run are not lost.
   if (closed_ && std::chrono::steady_clock::now() > deadline_) {
     dropped_ += waiting_.size();
     waiting_.clear();
@@ -126,6 +129,7 @@ std::unique_ptr<OutgoingQueue::Entry> OutgoingQueue::free_entry() {
       return entry;
     }
   }
+  // Allocated outside of the lock.
   return std::make_unique<Entry>();
 }
 

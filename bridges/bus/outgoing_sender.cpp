@@ -23,6 +23,7 @@ void OutgoingSender::run() {
 
 void OutgoingSender::help() {
   const Clock::time_point begin = Clock::now();
+  // Sending took the simulating thread too long a moment ago: the sending thread does it alone for a while.
   if (begin < help_from_) return queue_.wake();
   std::unique_ptr<OutgoingQueue::Entry> entry;
   while ((entry = queue_.next_if_idle(std::move(entry)))) {

@@ -91,6 +91,7 @@ void Client::subscribe_bytes(const std::string& channel, BytesHandler handler) {
         handler(payload);
       } catch (const MessageError& error) {
         ++counts.bad;
+        // A sender of another version would fill the terminal with one line per message.
         if (!reported) std::cerr << channel << ": " << error.what() << " (ignored; further ones are only counted)\n";
         reported = true;
       }

@@ -74,7 +74,7 @@ bool OtherSimulators::is_answered(Link& link) const {
   return false;
 }
 
-/// Answers the requests of other starting runs.  Of two runs that start at the same time, the one with the smaller
+/// Answers the requests of other starting runs.  When two runs start at the same time, the one with the smaller
 /// number continues.  A run that receives a request may have sent its own before the other one listened, so it sends it
 /// again.
 bool OtherSimulators::answer_requests(Link& link) {

@@ -9,6 +9,7 @@
 namespace bridges {
 
 void RunAudit::add(AuditEntry audit_entry, std::int32_t branch) {
+  // The texts come from clients: no control characters may reach a terminal that shows the audit.
   for (std::string* text : {&audit_entry.client, &audit_entry.signer, &audit_entry.text})
     *text = sim::shortened(sim::printable(*text), 300);
   audit_entry.sim_time_s = sim::to_seconds(world_.now());
@@ -25,6 +26,7 @@ void RunAudit::add(AuditEntry audit_entry, std::int32_t branch) {
     shoal::encode_into(message, buffer_);
     bus_.publish("sim.audit", buffer_, world_.now());
   }
+  // The first ones are kept, since an attack must not be able to push them out.
   if (all_.size() < max_kept) all_.push_back(std::move(audit_entry));
 }
 

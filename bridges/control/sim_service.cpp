@@ -73,6 +73,7 @@ bool SimService::due(double rate_hz) const {
 void SimService::publish_step() {
   spawned_vehicles_.report_changes();
   if (!muted_) spawned_vehicles_.report_to_other_timeline(network_);
+  // Already published in this step if the run has just started or was rewound.
   if (due(info_rate_hz) && info_step_ != world_.step_number()) publish_info();
   if (!due(world_.config().state_rate_hz)) return;
   shoal::utime_t clock{};
@@ -80,6 +81,7 @@ void SimService::publish_step() {
   publish(bus_, "sim.clock", clock);
   for (std::size_t i = 1; i < links_.size(); ++i) {
     shoal::encode_into(clock, buffer_);
+    // A muted run repeats steps that its clients have seen.
     if (!muted_) links_[i].network->publish("sim.clock", buffer_, world_.now());
     lockstep_.post(static_cast<int>(i), "sim.clock", buffer_);
   }
@@ -322,6 +324,7 @@ std::optional<std::string> SimService::execute(Link& link, const shoal::sim_cont
                                                TimeMachine* machine) {
   const std::string& command = request.command;
   const int number = number_of(link);
+  // The time machine goes first: pause, step, rewind and the like act on the run, everything else on the world.
   if (machine != nullptr)
     if (auto text = machine->execute(command, request.text, request.value)) return text;
   if (command == "quit") {
@@ -386,6 +389,7 @@ void SimService::execute_again(const shoal::sim_control_request_t& request) {
   else if (command == "do")
     spawned_vehicles_.act(request.client, request.text);
   else
+    // What else a client may request acts on the run, not on the world, and is not part of a replay.
     throw std::runtime_error("'" + sim::shortened(sim::printable(command)) + "' does not change a world");
 }
 

@@ -128,6 +128,7 @@ void SpawnedVehicles::report_difference(Known& known, sim::Bus& bus) {
       ++reported;
       continue;
     }
+    // Removals go first, so that a vehicle of the same name that was added since is reported as new.
     report(bus, reported->second, false);
     owners_.erase(reported->first);
     reported = known.erase(reported);
@@ -182,6 +183,7 @@ std::string SpawnedVehicles::add(const std::string& client, const sim::SpawnRequ
   if (request.with_client) {
     Client& owner = clients_[client];
     owner.last_seen = Clock::now();
+    // A client with several vehicles has one time-out, the longest that it asked for.
     owner.timeout = std::max(owner.timeout, std::chrono::duration<double>(request.alive_timeout_s));
   }
   sim::log_info("client '{}' spawned vehicle '{}' at {:.3f} s", sim::printable(sim::shortened(client)), vehicle.name(),
@@ -228,6 +230,7 @@ void SpawnedVehicles::remove_timed_out(const std::function<bool(const std::strin
   const Clock::time_point now = Clock::now();
   std::vector<std::string> silent;
   for (auto& [name, client] : clients_) {
+    // Taking part in the lockstep is a sign of life.
     if (takes_part(name)) client.last_seen = now;
     if (now - client.last_seen > client.timeout) silent.push_back(name);
   }

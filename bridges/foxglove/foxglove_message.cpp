@@ -136,6 +136,8 @@ ClientText parse_text(std::string_view text) {
   if (op == message.end()) throw WebError("message must have a text 'op'");
   result.op = text_of(*op, "op", max_op);
   if (const auto id = message.find("id"); id != message.end() && id->is_string()) result.id = text_of(*id, "id");
+  // Only fields of the known operations are read: clients of newer protocol versions add others, which must not end
+  // the connection.
   if (result.op == "subscribe") {
     for (const Json& item : list_of(message, "subscriptions"))
       result.subscriptions.push_back({number_at(item, "id"), number_at(item, "channelId")});

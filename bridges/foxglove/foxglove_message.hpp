@@ -25,7 +25,7 @@ struct Parameter {
   std::variant<std::monostate, bool, double, std::string> value;
 };
 
-/// Text message of a client, as far as the server understands it.
+/// Text message of a client: the fields that the server understands.
 struct ClientText {
   std::string op;                               ///< kind, 1 to 64 bytes
   std::vector<Subscription> subscriptions;      ///< of `subscribe`

@@ -215,6 +215,7 @@ void Protocol::process(const Reply& reply) {
   const Request& request = reply.request;
   const auto found = std::find_if(sessions_.begin(), sessions_.end(),
                                   [&](const Session* each) { return each->link_.number() == request.client; });
+  // The client may have closed its connection while the run answered.
   if (found == sessions_.end()) return;
   Session& session = **found;
   switch (request.kind) {

@@ -66,7 +66,7 @@ class Protocol final : public WebProtocol, private ros2::TopicSink {
   std::size_t max_message_bytes() const override { return max_client_message_bytes; }
   bool admits(std::string_view query) const override;
 
-  // For all threads:
+  // Thread-safe:
 
   /// Returns the number of clients.
   int clients() const { return clients_.load(); }
@@ -82,7 +82,7 @@ class Protocol final : public WebProtocol, private ros2::TopicSink {
   void jump(std::int64_t utime);
   /// Sets what clients know of pause and speed.
   void set_state(const PlaybackState& state);
-  /// Returns the next request, or nothing.
+  /// Returns the next request, or std::nullopt.
   std::optional<Request> take_request();
   /// Answers a request; without effect when the client has left.
   void reply(const Request& request, bool ok, std::string text);
@@ -102,7 +102,7 @@ class Protocol final : public WebProtocol, private ros2::TopicSink {
     bool ok = false;
     std::string text;
   };
-  /// What the other threads have sent since deliver().
+  /// Input of other threads since deliver().
   struct Box {
     std::vector<Entry> entries;
     std::size_t bytes = 0;
@@ -156,7 +156,7 @@ class Protocol final : public WebProtocol, private ros2::TopicSink {
   std::map<int, std::size_t> waiting_requests_;  // by client
   std::atomic<bool> has_requests_ = false;
 
-  // Of the thread of the server:
+  // Members of the server thread:
   std::optional<ServerInfo> info_;
   PlaybackState state_;
   std::optional<std::int64_t> time_;

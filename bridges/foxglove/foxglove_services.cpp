@@ -93,6 +93,7 @@ const Service* find_service(std::uint32_t id) {
 std::string request_schema(const Service& service) {
   switch (service.argument) {
     case Argument::none:
+      // A ROS 2 message must have a member; the generator of ROS gives empty ones this one.
       return std::string("uint8 ") + ros2::only_member + "\n";
     case Argument::number:
       return "float64 " + std::string(service.member) + "\n";

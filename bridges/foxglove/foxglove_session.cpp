@@ -11,7 +11,7 @@ namespace bridges::foxglove {
 namespace {
 
 constexpr std::string_view control_is_off = "control is off: start Shoal with --foxglove-control";
-/// What a message costs besides its payload.
+/// Overhead of a message besides its payload.
 constexpr std::size_t message_bytes = 100;
 
 }  // namespace
@@ -50,8 +50,10 @@ void Session::receive_text(std::string_view bytes) {
     parameters_.insert(message.names.begin(), message.names.end());
   } else if (message.op == "unsubscribeParameterUpdates" && may(Control::run)) {
     for (const std::string& name : message.names) parameters_.erase(name);
+    // An empty list unsubscribes from all parameters.
     gets_parameters_ = !parameters_.empty() && !message.names.empty();
   } else if (message.op.find("Parameter") != std::string::npos) {
+    // The operation is known, but this connection may not use it.
     report(StatusLevel::error, message.op + ": " + std::string(control_is_off));
   } else {
     report(StatusLevel::warning, "'" + message.op + "' is not supported");
@@ -104,6 +106,7 @@ void Session::call(ServiceCall call) {
     made.text = std::move(argument.text);
     made.call = {call.service, call.call, call.encoding, ""};
     made.client = link_.number();
+    // The answer comes later, from the thread that simulates.
     if (!protocol_.add_request(std::move(made))) refuse("too many requests of this client are waiting");
   } catch (const WebError& error) {
     refuse(error.what());

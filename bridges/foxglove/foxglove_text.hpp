@@ -14,7 +14,7 @@
 
 namespace bridges::foxglove {
 
-/// What a client may do besides reading.
+/// Rights of a client besides reading.
 enum class Control {
   none,     ///< nothing
   run,      ///< steer a run: services and parameters

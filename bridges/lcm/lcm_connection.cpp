@@ -66,6 +66,7 @@ LcmConnection::LcmConnection(const std::string& url)
     : url_(resolve_lcm_url(url)), subscriptions_(std::make_unique<Subscriptions>()) {
   const LcmEndpoint endpoint = lcm_endpoint(url_);
   is_tcp_ = endpoint.kind == "tcpq";
+  // Checked here, so that the error of a missing server says how to start one.
   if (is_tcp_) require_tcp_server(url_, endpoint);
   lcm_.reset(lcm_create(url_.c_str()));
   if (!lcm_) refuse_url(url_, "LCM cannot be used: no route for multicast, or the port is taken; run `shoal doctor`");
@@ -150,10 +151,12 @@ LcmSubscription* LcmConnection::add(const std::string& channel, Handler handler,
     udp_->add(added->wish);
     return added;
   }
+  // liblcm takes channels as regular expressions.
   const std::string pattern = channel.empty() ? ".*" : literal_channel_pattern(channel);
   added->of_liblcm = lcm_subscribe(lcm_.get(), pattern.c_str(), from_liblcm, added);
   if (added->of_liblcm == nullptr)
     throw BusError("LCM cannot subscribe to '" + pattern + "' on " + url_ + "; run `shoal doctor`");
+  // 0 is unlimited in liblcm: messages wait in Shoal's own queues, which count what they drop.
   lcm_subscription_set_queue_capacity(added->of_liblcm, 0);
   return added;
 }

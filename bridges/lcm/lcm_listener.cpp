@@ -49,6 +49,7 @@ void LcmListener::keep(const LcmMessage& message, void* listener) {
     const std::lock_guard lock(self.mutex_);
     self.arrived_bytes_ += received.payload.size() + message_overhead_bytes;
     self.arrived_.push_back(std::move(received));
+    // The newest message stays in any case, however large.
     while (self.arrived_bytes_ > max_waiting_bytes && self.arrived_.size() > 1) {
       self.arrived_bytes_ -= self.arrived_.front().payload.size() + message_overhead_bytes;
       self.arrived_.pop_front();
@@ -122,6 +123,7 @@ void LcmListener::receive_in_background() {
     if (stopped(readable)) return;
     if (readable.count > 0) {
       const std::lock_guard lock(receive_mutex_);
+      // A bound on the work under the lock, so that readers of the queue get their turn.
       for (int i = 0; i < max_batches && connection_.handle() == LcmConnection::Handled::more; ++i) {
       }
     }

@@ -52,6 +52,7 @@ bool UdpInbox::handle() {
       },
       [this](const LcmReassembly::Message& message, std::int64_t at_us) { deliver(message, at_us); });
   received_bytes_ = receiver_.counts().bytes;
+  // Datagrams without a subscriber cost a wake-up each; a filter in the kernel pays once there are many.
   if (unmatched_ - unmatched_before_ >= min_unmatched_for_filter) filter_if_worthwhile();
   return more;
 }

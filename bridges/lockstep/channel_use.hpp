@@ -9,7 +9,7 @@
 
 namespace bridges {
 
-/// What the clients of a lockstep did with each channel, for warnings at the end of the run.
+/// Use of each channel by the clients of a lockstep, for warnings at the end of the run.
 class ChannelUse {
  public:
   struct Use {

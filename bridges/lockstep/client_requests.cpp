@@ -22,6 +22,7 @@ bool ClientRequests::add(Waiting request) {
   const auto known = waiting_.find(client);
   if (known != waiting_.end() && std::any_of(known->second.begin(), known->second.end(), [&](const Waiting& each) {
         return is_repetition(each.request, request.request);
+        // A repetition is not an error: UDP may have lost the answer, which comes when the first copy is executed.
       }))
     return true;
   const std::size_t bytes = request.request.text.size();
@@ -40,6 +41,8 @@ bool ClientRequests::is_leaving(const std::string& client) const {
 }
 
 std::optional<ClientRequests::Waiting> ClientRequests::next(const std::vector<std::string>& late) {
+  // One request of each client per round, in the order of their names: the order in which they arrived would differ
+  // from run to run.
   if (round_.empty()) {
     if (!std::all_of(late.begin(), late.end(), [this](const std::string& client) { return has(client); }))
       return std::nullopt;

@@ -12,6 +12,7 @@ namespace bridges {
 ControlGuard::Opened ControlGuard::open(std::string_view channel, std::span<const std::byte> payload) {
   Opened opened;
   if (!is_signed(payload)) {
+    // The content is returned even if refused: the service needs the client's name to answer it and for the audit.
     opened.content.assign(payload.begin(), payload.end());
     if (key_) opened.refusal = needs_key_text;
     return opened;
@@ -20,6 +21,7 @@ ControlGuard::Opened ControlGuard::open(std::string_view channel, std::span<cons
   opened.content = std::move(message.content);
   if (!key_) return opened;
   const std::string called = "the message is signed by '" + sim::printable(message.sender) + "', but ";
+  // The MAC covers the channel, so that a signed message cannot be replayed on another one.
   if (!has_mac_of(*key_, channel, payload)) {
     opened.refusal = called + "not with the key of this run for channel '" + std::string(channel) + "'";
     return opened;

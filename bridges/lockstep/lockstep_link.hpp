@@ -37,7 +37,7 @@ struct LockstepService::Link {
   const bool is_recorded;
   sim::ClientMessages messages;
   std::unique_ptr<sim::Mailbox> acks, resend_requests, bundles;
-  // By channel: opened only for other clients, or for the record.
+  // Mailboxes by channel, opened only for other clients or for the record.
   std::map<std::string, std::unique_ptr<sim::Mailbox>, std::less<>> passed_on;
   std::set<std::string, std::less<>> lost;  // channels with messages that did not arrive, closed for the record
   sim::Bytes buffer;

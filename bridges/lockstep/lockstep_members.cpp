@@ -194,7 +194,7 @@ bool LockstepService::leave(int link, const shoal::sim_control_request_t& reques
   // Accept messages that it sent before it left and that arrive later.  It does not answer later ticks.
   const bool answered = member->answered || (terms.acknowledged >= 0 && terms.acknowledged < member->sequence);
   const bool complete = link_of(member->link).messages.is_complete(member->name);
-  // It may leave because a request was not answered in time: that waits no longer.
+  // The client may leave because a request was not answered in time; that request is dropped.
   if (terms.session != 0 && !(answered && complete)) return false;
   // Remove the client.
   report_who_left(*member, link, terms);
@@ -209,6 +209,8 @@ void LockstepService::report_who_left(const sim::LockstepMember& member, int lin
   const std::string called = "client '" + sim::printable(member.name) + "'";
   const std::string at = " at " + seconds_text(world_.now()) + " on " + link_of(link).called;
   const std::string more = reported_left_ == max_reports ? " (further ones are not reported)" : "";
+  // Without its session a request may come from any program, and the user should know which one ended the client's
+  // part.
   if (terms.session == 0 && member.terms.session != 0)
     sim::log_warn("lockstep: a request without its session{} released {}; the world continues without it{}", at, called,
                   more);
@@ -230,6 +232,7 @@ void LockstepService::follow(int link, const shoal::sim_control_request_t& reque
   });
   if (known != followers_.end()) return;
   followers_.push_back({request.client, session, link});
+  // The oldest one gives way: a client that never ends its session must not fill the list.
   if (followers_.size() > max_followers) followers_.pop_front();
 }
 
@@ -261,6 +264,7 @@ void LockstepService::discard(const std::string& client, const std::string& why)
     give_up(*member);
     add_subscriptions(use_, *member);
     if (member->terms.session != 0) {
+      // Remembered, so that late messages of the old session are recognized when the name is used again.
       ended_.emplace_back(client, member->terms.session);
       if (ended_.size() > max_ended_sessions) ended_.pop_front();
     }

@@ -141,6 +141,7 @@ void LockstepService::take_messages() {
                [&](const sim::Message& question) { take_request(static_cast<int>(i), question); });
     take_up_to(max_at_once, *link.bundles,
                [&](const sim::Message& bundle) { take_bundle(static_cast<int>(i), bundle); });
+    // These mailboxes only make the gate admit the channel to the record; no client reads them.
     for (const auto& [channel, mailbox] : link.passed_on)
       while (mailbox->take()) {
       }
@@ -255,6 +256,7 @@ bool LockstepService::do_without(const sim::LockstepMember& member) {
   const std::vector<std::string> missing = link.messages.missing_channels(member.name);
   if (!member.answered || missing.empty() || !std::all_of(missing.begin(), missing.end(), [&](const std::string& each) {
         return is_only_recorded(member.link, each);
+        // A message that a device or another client needs is worth waiting for; one that is only recorded is not.
       }))
     return false;
   sim::log_warn("lockstep: {}; only the record needs them, and the run continues without them",

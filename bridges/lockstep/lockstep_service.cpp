@@ -59,6 +59,7 @@ void LockstepService::watch_gates() {
   const bool any_receives = std::any_of(lockstep_.members().begin(), lockstep_.members().end(),
                                         [](const auto& entry) { return !entry.second.terms.receives.empty(); });
   for (std::size_t i = 0; i < links_.size(); ++i) {
+    // A watch costs a call for each message, so it is only set while some client must have all messages.
     if (!any_receives)
       links_[i]->gate.set_watch({});
     else
@@ -144,7 +145,7 @@ std::vector<std::string> LockstepService::late() {
 }
 
 LockstepOutcome LockstepService::synchronize(const Wait& wait, const std::function<bool()>& idle) {
-  take_messages();  // also when no client is due: messages are checked, and do not accumulate
+  take_messages();  // even when no client is due: messages are checked, and do not accumulate
   drop_overflowing();
   while (true) {
     std::vector<std::string> names = late();
@@ -232,7 +233,7 @@ void LockstepService::serve(const std::vector<std::string>& late) {
     const auto [entry, fresh] = pending_.try_emplace(client);
     Pending& requested = entry->second;
     if (fresh) requested = {now, now, now, now, first_resend_interval, false, false};
-    // Its time-out starts when its request has been carried out.
+    // The time-out of the client starts when its request has been carried out.
     constexpr int max_extensions = 100;
     const bool awaits_turn = requests_.has(client);
     const bool awaits_others = awaits_turn && std::any_of(late.begin(), late.end(), [this](const std::string& each) {

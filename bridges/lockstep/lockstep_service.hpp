@@ -119,7 +119,7 @@ class LockstepService {
   std::string names() const;
   /// Returns the client that the world waits for, as `waits 1.5 s for 'pilot'`; empty: none.
   std::string waits_for();
-  /// Updates the time-outs; must be called periodically, also while the world is paused.
+  /// Updates the time-outs; must be called periodically, even while the world is paused.
   void check_clock();
 
   /// Posts a message that was sent on a link without its gate, for the clients that must receive it.

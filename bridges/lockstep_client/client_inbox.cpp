@@ -56,6 +56,7 @@ bool ClientInbox::complete() {
   for (Named& named : named_) {
     if (named.there) continue;
     std::deque<Held>& held = held_[named.channel];
+    // Equal messages on a channel are interchangeable, so the checksum identifies them.
     const auto found = std::find_if(held.begin(), held.end(), [&](const Held& each) { return each.crc == named.crc; });
     if (found == held.end()) {
       all = false;
@@ -80,6 +81,7 @@ void ClientInbox::add(std::int32_t first, const std::vector<shoal::sim_payload_t
     if (place >= named_.size()) return;
     Named& named = named_[place];
     const std::span<const std::byte> bytes = bytes_of(messages[i]);
+    // A resent message is recognized by its place and its checksum; the first copy counts.
     if (named.there || sim::crc32(bytes) != named.crc) continue;
     named.payload.assign(bytes.begin(), bytes.end());
     named.there = true;
@@ -104,6 +106,8 @@ void ClientInbox::hand_over_unnamed(const Handle& handle) {
       if (recent_.contains({i, held.crc})) {
         ++counts_.repeated;
       } else if (++held.ticks < hold_ticks) {
+        // The tick that names a message may come after it; messages that no tick names are handed over after some
+        // ticks.
         keep.push_back(std::move(held));
       } else {
         ++counts_.unnamed;

@@ -15,6 +15,8 @@ void ClientOutbox::publish(std::string_view channel, std::span<const std::byte> 
     throw BusError("'" + client_ + "' publishes more than " + std::to_string(sim::max_named_messages) +
                    " messages between two ticks");
   Published message{std::string(channel), sim::crc32(payload), sim::Bytes(payload.begin(), payload.end())};
+  // Between acknowledgment and tick the list of what was published is closed; what comes in between belongs to the
+  // next tick.
   if (!open_) {
     delayed_.push_back(std::move(message));
     return;

@@ -106,6 +106,8 @@ void LockstepClient::request(const std::string& command, double value, const std
   if (command == "join") join_id_ = id;
   answered_id_.reset();
   milliseconds interval = first_resend_interval;
+  // UDP loses messages, so the request is repeated, less and less often, with the same id: a late answer to an
+  // earlier copy still counts.
   while (Clock::now() < deadline && !(stop_ && heed_stop)) {
     send_request(command, id, value, text);
     const auto resend = std::min(deadline, Clock::now() + interval);
@@ -223,11 +225,13 @@ void LockstepClient::request_end_notification() {
 
 bool LockstepClient::handle_message() {
   const bool forever = silence_limit_.count() == 0;
+  // Clock::now() + limit would overflow for 'forever'.
   const auto deadline = forever ? Clock::time_point::max() : Clock::now() + silence_limit_;
   while (true) {
     auto until = deadline;
     if (following_) {
       request_end_notification();
+      // The request for a notification of the end may be lost on UDP; it is repeated until answered.
       if (requests_left_ > 0 && answered_id_ != join_id_) until = std::min(until, ask_at_);
     }
     const auto message = wait(until);
@@ -304,6 +308,7 @@ void LockstepClient::start_tick(shoal::sim_tick_t tick, const shoal::sim_due_t& 
 void LockstepClient::take_request(std::span<const std::byte> payload) {
   const auto question = try_decode<shoal::sim_resend_t>(payload);
   if (!question || question->of_client == 0 || question->client != name_ || question->session != session_) return;
+  // An open outbox belongs to the next tick; its messages are not listed yet.
   if (question->sequence != sequence_ || outbox_.is_open()) return;
   shoal::sim_resent_t head{};
   head.utime = tick_.utime;
@@ -324,6 +329,7 @@ void LockstepClient::take_bundle(std::span<const std::byte> payload) {
 
 void LockstepClient::request_when_due() {
   const auto now = Clock::now();
+  // Messages may be late rather than lost: asking at once would load a network that is busy already.
   if (now < incomplete_->ask_at) return;
   incomplete_->ask_at = now + incomplete_->interval;
   incomplete_->interval = next_resend_interval(incomplete_->interval);
@@ -431,6 +437,7 @@ void LockstepClient::leave(const std::string& reason) {
 void LockstepClient::leave_at_next_tick(const std::string& reason, milliseconds timeout) {
   if (!joined_) return;
   const auto deadline = Clock::now() + timeout;
+  // The request to leave is valid at a tick, so the world must not wait for this one.
   acknowledge(tick_);
   const bool is_awaited = await_tick(deadline);
   if (!is_last_tick()) {

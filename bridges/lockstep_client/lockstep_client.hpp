@@ -80,7 +80,7 @@ class LockstepClient {
   /// Waits briefly for the confirmation.
   void leave(const std::string& reason = {});
   /// Answers the open tick, and leaves at the next one, which makes the step at which it leaves independent of the
-  /// network.  Leaves as leave() does when that tick does not come in time, and when the run is over.
+  /// network.  Leaves as leave() does when that tick does not arrive in time, and when the run is over.
   void leave_at_next_tick(const std::string& reason, std::chrono::milliseconds timeout);
   /// Requests a vehicle (`text`: YAML, an entry of `vehicles:`) in the open tick, or the next one when none is open,
   /// and returns its report.  Throws BusError with the reason when the simulator refuses, when it does not answer in
@@ -127,7 +127,8 @@ class LockstepClient {
   void request(
       const std::string& command, double value, const std::string& text, Clock::time_point deadline, bool heed_stop,
       const std::function<bool()>& is_complete = [] { return true; });
-  /// Waits until a tick is open, or has arrived.  Returns false when none comes in time, and when the session is over.
+  /// Waits until a tick is open, or has arrived.  Returns false when none arrives in time, and when the session is
+  /// over.
   bool await_tick(Clock::time_point deadline);
   bool is_last_tick() const { return incomplete_ && incomplete_->tick.last != 0; }
   void request_leave(const std::string& reason, Clock::time_point deadline);

@@ -17,6 +17,7 @@ void send_bundles(shoal::sim_resent_t bundle, std::size_t first, std::size_t cou
   for (std::size_t at = first; at < count;) {
     bundle.first = static_cast<std::int32_t>(at);
     bundle.message.clear();
+    // A bundle fits into one UDP datagram, so that it needs no reassembly; a larger message is sent alone.
     for (std::size_t bytes = 0; at < count; ++at) {
       const ResentMessage message = message_at(at);
       bytes += message.payload.size() + message_head_bytes;

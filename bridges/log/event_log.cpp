@@ -99,6 +99,7 @@ std::size_t EventLogReader::fill(std::size_t size) {
   buffer_start_ = at_;
   buffered_ = there;
   if (buffer_.size() < size + read_bytes) buffer_.resize(size + read_bytes);
+  // read() may return less than was asked for, and is interrupted by signals.
   while (buffered_ < size) {
     const ssize_t got = ::pread(file_.number(), buffer_.data() + buffered_, buffer_.size() - buffered_,
                                 static_cast<off_t>(buffer_start_ + buffered_));
@@ -148,6 +149,7 @@ bool EventLogWriter::write(std::int64_t number, std::int64_t utime, std::string_
     if (bytes > 0) std::memcpy(to, from, bytes);
     to += bytes;
   };
+  // Numbers of an event are big-endian, as in liblcm's eventlog.c.
   const auto put32 = [&put](std::size_t value) {
     const std::uint32_t ordered = htobe32(static_cast<std::uint32_t>(value));
     put(&ordered, sizeof ordered);

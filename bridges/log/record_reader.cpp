@@ -57,6 +57,7 @@ class McapRecordReader final : public RecordReader {
     const mcap::Channel& channel = file_.channel(message.channel);
     const auto name = channel.metadata.find("lcm_channel"), type = channel.metadata.find("lcm_type");
     if (name == channel.metadata.end()) return false;
+    // Records store ns; LCM has us.
     event = {name->second, static_cast<std::int64_t>(message.log_time_ns / 1000), message.data};
     if (channel.encoding == "lcm") return true;
     if (type == channel.metadata.end()) return false;

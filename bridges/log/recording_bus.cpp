@@ -133,8 +133,8 @@ bool RecordingBus::leaves_out(std::string_view channel, std::size_t bytes) {
   if (position() + bytes + head_bytes > budget_->bytes) {
     if (!needed) return true;
     sim::log_warn(
-        "{}: the record has used its budget of {} MB at {} s and ends; what is needed for a replay does not fit", path_,
-        static_cast<double>(budget_->bytes) / 1e6, second);
+        "{}: the record has used its budget of {} MB at {} s and ends; the data needed for a replay does not fit",
+        path_, static_cast<double>(budget_->bytes) / 1e6, second);
     close();
     return false;
   }

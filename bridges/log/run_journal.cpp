@@ -92,6 +92,7 @@ void RunJournal::add(std::int64_t step, const std::string& bus, const std::strin
                      std::span<const std::byte> payload) {
   if (muted_) return;
   if (listener_) listener_(step, {bus, channel, sim::Bytes(payload.begin(), payload.end())});
+  // Split before LCM's limit of a message; a reader puts the parts together by `sequence`.
   if (!waiting_.empty() && waiting_bytes_ + payload.size() > max_bytes) publish_inputs();
   shoal::sim_input_t input{};
   input.step = step;

@@ -11,7 +11,7 @@ namespace bridges {
 /// Finds where the time stamps of a log go back, as in logs that were joined, or after a clock was set back.
 class TimeOrder {
  public:
-  /// To be called for each event, in the order of the log.
+  /// Call for each event, in the order of the log.
   void add(std::int64_t utime, std::string_view channel);
   /// Returns a line about the first event before its predecessor, with the number of such events; none: there is none.
   std::optional<std::string> problem() const;

@@ -41,7 +41,7 @@ inline constexpr std::size_t record_head_bytes = 9;
 inline constexpr std::size_t message_head_bytes = 22;
 /// Limit of a chunk, of its content and of any other record.
 inline constexpr std::uint64_t max_record_bytes = std::uint64_t{1} << 28;
-/// Of all schemas and channels together, which a reader keeps: a chunk of some kilobytes can hold hundreds of
+/// Limit for all schemas and channels together, which a reader keeps: a chunk of some kilobytes can hold hundreds of
 /// megabytes.
 inline constexpr std::uint64_t max_kept_bytes = std::uint64_t{1} << 26;
 

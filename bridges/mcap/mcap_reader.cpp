@@ -165,6 +165,7 @@ bool McapReader::read_in_chunk(Item& item) {
   }
   chunk_at_ += record_head_bytes + static_cast<std::size_t>(length);
   const auto opcode = static_cast<Opcode>(left[0]);
+  // Other records may not stand in a chunk (MCAP specification, Chunk).
   const bool allowed = opcode == Opcode::schema || opcode == Opcode::channel || opcode == Opcode::message;
   return allowed && use(opcode, left.subspan(record_head_bytes, static_cast<std::size_t>(length)), item);
 }
@@ -251,6 +252,7 @@ bool McapReader::use_attachment(std::span<const std::byte> content) {
   const std::span<const std::byte> data = in.bytes(in.number<std::uint64_t>());
   attachment_.data.assign(reinterpret_cast<const char*>(data.data()), data.size());
   const auto crc = in.number<std::uint32_t>();
+  // 0 means that the writer computed none.
   const bool valid = in.ok() && (crc == 0 || crc_after(0, content.first(content.size() - attachment_crc_bytes)) == crc);
   if (!valid) report("a damaged attachment");
   return valid;

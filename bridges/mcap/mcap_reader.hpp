@@ -17,7 +17,7 @@ namespace bridges::mcap {
 /// lengths are bounded by the file and by max_record_bytes, and messages before the damage are read.
 class McapReader {
  public:
-  /// What next() has read.
+  /// Result of next().
   enum class Item { message, attachment, metadata, end };
 
   /// Throws BusError when the file cannot be opened, is not a regular file, or is not an MCAP file.

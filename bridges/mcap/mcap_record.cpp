@@ -89,6 +89,7 @@ bool McapRecord::write_info(std::span<const std::byte> payload) {
   if (schema == nullptr || schema->name != "shoal.sim_info_t" || shoal::validate(*schema, payload, shoal::Finite::any))
     return true;
   const auto info = shoal::decode<shoal::sim_info_t>(payload, shoal::Finite::any);
+  // A run publishes its information every 10 s; only that of a new branch says something new.
   if (branch_ == info.branch) return true;
   if (!branch_ && !file_.write(Attachment{time_ns_, time_ns_, "world.yaml", "application/yaml", info.resolved_config}))
     return false;

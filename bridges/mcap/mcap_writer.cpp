@@ -163,6 +163,8 @@ bool McapWriter::put_chunk() {
   out.number(index.time.first_ns);
   out.number(index.time.last_ns);
   out.number(index.raw_bytes);
+  // The CRC is that of the uncompressed records (MCAP specification, Chunk), so that it also covers the
+  // decompression.
   out.number(crc_of(0, chunk_));
   out.text("zstd");
   out.number(index.compressed_bytes);
@@ -188,6 +190,7 @@ void McapWriter::put_message_indexes(RecordBuilder& out, ChunkIndex& index) {
     }
     out.end();
   }
+  // The indexes follow their chunk, whose length was all that had been put out.
   index.index_bytes = out_.size() - index.length;
 }
 
@@ -202,6 +205,8 @@ bool McapWriter::write(const Attachment& attachment) {
   out.bytes(std::as_bytes(std::span(attachment.data)));
   out.number(crc_of(0, std::span(out_).subspan(record_head_bytes)));
   out.end();
+  // The index entry in the summary needs the offset at which this attachment begins, which is known only before it is
+  // written.
   FileIndex& index = file_index_.emplace_back(FileIndex{Opcode::attachment_index, {}});
   RecordBuilder content(index.content);
   content.number(bytes_);
@@ -264,6 +269,7 @@ void McapWriter::put_chunk_indexes(RecordBuilder& out) const {
     out.number(index.time.last_ns);
     out.number(index.offset);
     out.number(index.length);
+    // Each entry has a number of 2 and an offset of 8 bytes.
     out.number(static_cast<std::uint32_t>(index.index_offsets.size() * 10));
     for (const auto& [channel, offset] : index.index_offsets) {
       out.number(channel);
@@ -292,6 +298,7 @@ void McapWriter::put_statistics(RecordBuilder& out) const {
   out.number(static_cast<std::uint32_t>(chunk_index_.size()));
   out.number(time_.first_ns);
   out.number(time_.last_ns);
+  // Each channel is listed with a number of 2 and a count of 8 bytes.
   out.number(static_cast<std::uint32_t>(written(channel_written_) * 10));
   for (std::size_t channel = 1; channel <= channels_.size(); ++channel) {
     if (!channel_written_[channel - 1]) continue;

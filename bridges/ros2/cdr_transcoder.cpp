@@ -34,6 +34,7 @@ class Transcoder {
     for (const shoal::Dimension& dimension : member.dimensions)
       count *= static_cast<std::size_t>(
           dimension.is_variable() ? lengths[static_cast<std::size_t>(dimension.length_slot)] : dimension.constant);
+    // An LCM array of variable size is a CDR sequence, which begins with its count; a fixed one has none in either.
     if (member.is_variable()) out_.put_count(count);
     if (member.type == WireType::compound) {
       for (std::size_t i = 0; i < count; ++i)
@@ -140,6 +141,8 @@ class BackTranscoder {
     for (const shoal::Dimension& dimension : member.dimensions) {
       const std::uint64_t size = dimension.is_variable() ? lengths[static_cast<std::size_t>(dimension.length_slot)]
                                                          : static_cast<std::uint64_t>(dimension.constant);
+      // The lengths come from the payload. No array can have more elements than the whole payload has bytes, so this
+      // bounds the loops and keeps the product from overflowing.
       if (size > cdr_.size() || count > cdr_.size()) return false;
       count *= size;
     }
@@ -153,6 +156,7 @@ class BackTranscoder {
     if (count == 0) return true;
     if (!align(size) || !has(count) || !has(count * size)) return false;
     if (member.length_slot >= 0) lengths[static_cast<std::size_t>(member.length_slot)] = integer(size);
+    // LCM is big-endian and CDR is little-endian: the bytes of each element are reversed.
     for (std::size_t i = 0; i < count; ++i) {
       const auto first = cdr_.begin() + static_cast<std::ptrdiff_t>(at_);
       out_.insert(out_.end(), std::make_reverse_iterator(first + static_cast<std::ptrdiff_t>(size)),

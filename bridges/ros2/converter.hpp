@@ -20,7 +20,7 @@
 
 namespace bridges::ros2 {
 
-/// What earlier messages of a record tell a converter.
+/// Context that earlier messages of a record give a converter.
 struct ConverterContext {
   /// Part of a scene whose shape is an asset.
   struct AssetPart {

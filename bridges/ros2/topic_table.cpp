@@ -68,6 +68,7 @@ std::size_t TopicTable::standard_topic(const Converter& converter, std::string_v
   const bool common = converter.topic.starts_with('/');
   Topic topic;
   topic.name = converter.topic_for(channel);
+  // One topic for all channels, such as /tf: the name must not get a number.
   if (common)
     if (const auto known = common_topics_.find(topic.name); known != common_topics_.end()) return known->second;
   const std::string proposed = topic.name;
@@ -76,6 +77,7 @@ std::size_t TopicTable::standard_topic(const Converter& converter, std::string_v
   topic.type = converter.ros_type;
   topic.schema = standard_schema_text(converter.ros_type);
   if (!common) topic.lcm_channel = channel;
+  // What is published once must reach those who subscribe later.
   topic.latched = proposed == "/tf_static" || proposed == "/scene";
   const std::size_t number = add(std::move(topic));
   if (common) common_topics_.emplace(proposed, number);
@@ -83,6 +85,7 @@ std::size_t TopicTable::standard_topic(const Converter& converter, std::string_v
 }
 
 bool TopicTable::keep_bytes(std::string_view channel, std::span<const std::byte> payload, TopicSink& sink) {
+  // Raw topics need no type, so channels of unknown types are still recorded.
   auto known = raw_topics_.find(channel);
   if (known == raw_topics_.end()) {
     Topic topic;

@@ -72,6 +72,7 @@ std::string RunKey::text() const {
 }
 
 Mac RunKey::mac(std::string_view channel, std::span<const std::byte> bytes) const {
+  // A zero between channel and content, so that no two pairs give the same bytes.
   std::vector<unsigned char> data(channel.size() + 1 + bytes.size());
   std::memcpy(data.data(), channel.data(), channel.size());
   data[channel.size()] = 0;

@@ -74,6 +74,7 @@ sim::Bytes MessageSigner::sign(std::string_view channel, std::span<const std::by
   const auto* data = reinterpret_cast<const std::uint8_t*>(content.data());
   message.content.assign(data, data + content.size());
   sim::Bytes payload = shoal::encode(message);
+  // The MAC is the last field: all bytes before it are covered, counter and session included.
   const std::size_t before = payload.size() - Mac{}.size();
   const Mac mac = key_.mac(channel, std::span(payload).first(before));
   std::memcpy(payload.data() + before, mac.data(), mac.size());

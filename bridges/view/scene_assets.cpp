@@ -86,6 +86,7 @@ std::string SceneAssets::keep(const std::string& source, sim::Bytes bytes) {
 
 std::string SceneAssets::add_mesh(const sim::PartConfig& part) {
   const std::string path = (std::filesystem::path(part.directory) / part.mesh).string();
+  // The scale is part of what is drawn, and so of the name.
   const std::string source = fmt::format("mesh {} {}", part.scale, path);
   if (const auto known = hash_of_.find(source); known != hash_of_.end()) return known->second;
   try {
@@ -116,6 +117,7 @@ std::string SceneAssets::add_terrain(const sim::PartConfig& part) {
 
 std::string SceneAssets::add_image(const sim::TextureConfig& texture) {
   const std::string path = (std::filesystem::path(texture.directory) / texture.file).string();
+  // Read once, however many materials show it; a missing or huge one becomes an empty asset, which pages leave out.
   const std::string source = "image " + path;
   if (const auto known = hash_of_.find(source); known != hash_of_.end()) return known->second;
   AssetWriter out(image_asset);

@@ -17,7 +17,7 @@ Json grid_json(const sim::CurrentGrid& grid) {
   Json velocities = Json::array();
   for (int j = 0; j < rows; ++j)
     for (int i = 0; i < columns; ++i) {
-      // Between the ends, which rounding must not exceed: outside of the grid there may be no current.
+      // Rounding must not exceed the ends: there may be no current outside of the grid.
       const double x_m = std::min(high_m.x(), low_m.x() + i * (high_m.x() - low_m.x()) / (columns - 1));
       const double y_m = std::min(high_m.y(), low_m.y() + j * (high_m.y() - low_m.y()) / (rows - 1));
       const sim::Vector3d v_W = grid.velocity_W(x_m, y_m);

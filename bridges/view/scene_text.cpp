@@ -108,6 +108,7 @@ Json SceneWriter::part(const sim::PartConfig& part, const std::string& owner) {
   }
   json["pose"] = pose_json(sim::make_pose(part.position_m, part.rpy_rad));
   if (!part.color.empty()) json["color"] = part.color;
+  // The view of collision shapes leaves out parts that can touch nothing.
   if (!collisions_.has(part, owner)) json["collides"] = false;
   const auto material = material_numbers_.find(part.material);
   json["material"] = material == material_numbers_.end() ? 0 : material->second;
@@ -132,6 +133,7 @@ Json SceneWriter::bodies() {
   };
   for (const auto& vehicle : world_.vehicles()) add(*vehicle, vehicle->config(), vehicle->name(), "vehicle");
   for (const auto& [name, object] : world_.objects()) add(object, *object.config, name, "object");
+  // By number, as in sim.bodies, so that pages can merge both lists.
   std::sort(all.begin(), all.end(), [](const Json& a, const Json& b) { return a["id"] < b["id"]; });
   return all;
 }
@@ -180,6 +182,8 @@ Json SceneWriter::vehicles() const {
     }
     all.push_back({{"name", vehicle->name()},
                    {"body", vehicle->base().number()},
+                   // The page places the name and the track of a vehicle at its frame V, but only poses of bodies are
+                   // published.
                    {"pose", pose_json(vehicle->base().X_WB().inverse() * vehicle->X_WV())},
                    {"own_clock", !vehicle->clock().perfect()},
                    {"devices", std::move(devices)}});
@@ -201,7 +205,7 @@ Json SceneWriter::water() const {
   const double level_m = medium.still_surface_m();
   Json profile = Json::array();
   for (const double depth_m : {0., 1., 2., 5., 10., 20., 30., 50., 75., 100., 150., 200., 300., 500., 1000.}) {
-    // Of the water, also where it is below a trough of the waves.
+    // Velocity of the water, even where it is below a trough of the waves.
     const double c = 1 / medium.mean_slowness_spm(level_m - depth_m, level_m - depth_m);
     if (std::isfinite(c)) profile.push_back({level_m - depth_m, c});
   }

@@ -101,7 +101,7 @@ void ViewPublisher::sound_arrived(const sim::SoundArrived& arrived) {
   copy(arrived.p_W, message->position_m);
   message->duration_us = (arrived.ended - arrived.started).count();
   message->travel_time_s = arrived.travel_time_s;
-  // Of a signal that did not arrive the ratio is minus infinity, which a message cannot have.
+  // The ratio of a signal that did not arrive is minus infinity, which a message cannot have.
   message->snr_dB = std::isfinite(arrived.snr_dB) ? arrived.snr_dB : -1000;
   message->outcome = arrived.loss == sim::SignalLoss::none ? "received" : sim::signal_loss_word(arrived.loss);
 }
@@ -195,6 +195,8 @@ void ViewPublisher::publish_stamped_scene() {
   std::size_t bytes = scene_.scene.size();
   for (const auto& [hash, content] : assets_.all()) {
     bytes += content.size();
+    // Assets are named by the hash of their content, so an unchanged mesh is sent once, however often the scene
+    // changes.
     if (!published_assets_.insert(hash).second) continue;
     shoal::sim_asset_t asset{};
     asset.utime = scene_.utime;
@@ -205,6 +207,8 @@ void ViewPublisher::publish_stamped_scene() {
     publish("sim.asset", asset);
   }
   repeated_ = world_.now();
+  // A viewer that joins late gets the scene by repetition. The interval grows with the size, so that large meshes
+  // take a bounded data rate.
   repeat_after_ = std::max(repeat_interval, sim::from_seconds(static_cast<double>(bytes) / repeated_bytes_per_s));
 }
 
@@ -223,6 +227,7 @@ void ViewPublisher::fill_in_bodies(shoal::sim_bodies_t& bodies) const {
     const sim::Quaterniond q(X_WB.linear());
     bodies.body[i] = movables_[i].number;
     copy(X_WB.translation(), bodies.position_m[i].data());
+    // Single precision turns a body by less than a pixel, and halves the message.
     bodies.orientation[i] = {static_cast<float>(q.w()), static_cast<float>(q.x()), static_cast<float>(q.y()),
                              static_cast<float>(q.z())};
   }

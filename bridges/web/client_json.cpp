@@ -13,6 +13,7 @@ Json parse_client_json(std::string_view text) {
   constexpr int max_depth = 16;
   const auto check_depth = [](int depth, Json::parse_event_t event, Json& /*parsed*/) {
     const bool opens = event == Json::parse_event_t::object_start || event == Json::parse_event_t::array_start;
+    // A recursive parser would otherwise overflow its stack on a page's request.
     if (opens && depth >= max_depth)
       throw WebError("message is nested more than " + std::to_string(max_depth) + " deep");
     return true;

@@ -8,7 +8,7 @@
 
 namespace bridges {
 
-/// Message of a page, as far as the server understands it.
+/// Message of a page: the fields that the server understands.
 struct ClientMessage {
   std::string op;                         ///< kind: 1 to 32 characters a-z and `_`
   std::string token;                      ///< of `hello`; empty: none

@@ -16,7 +16,7 @@ struct AccessRules {
 };
 
 /// Reads `name`, `name:port`, `[address]` or `[address]:port`.  Returns the name or address in lower case, without
-/// brackets; nothing for any other text.
+/// brackets; std::nullopt for any other text.
 std::optional<std::string> host_of(std::string_view authority);
 /// Returns true for an IPv4 or IPv6 address in numbers, without brackets.
 bool is_address(std::string_view host);
@@ -34,10 +34,10 @@ bool is_origin_allowed(std::string_view origin, std::string_view host, const Acc
 /// Returns true for `scheme://host` or `scheme://host:port`.
 bool is_origin(std::string_view text);
 
-/// Returns the path of a request target, without its query; nothing if it does not begin with `/` or has characters
-/// other than a-z, A-Z, 0-9 and `-._~/`.
+/// Returns the path of a request target, without its query; std::nullopt if it does not begin with `/` or has
+/// characters other than a-z, A-Z, 0-9 and `-._~/`.
 std::optional<std::string_view> path_of(std::string_view target);
-/// Returns the hash of a path `/asset/HASH`, with 16 lower-case hexadecimal digits; nothing for another path.
+/// Returns the hash of a path `/asset/HASH`, with 16 lower-case hexadecimal digits; std::nullopt for another path.
 std::optional<std::uint64_t> asset_of(std::string_view path);
 /// Returns true if an `Accept-Encoding` header permits gzip.
 bool accepts_gzip(std::string_view header);

@@ -66,6 +66,7 @@ HttpSite::HttpSite(AccessRules rules, const std::string& page_directory)
 }
 
 HttpAnswer HttpSite::answer(const HttpRequest& request) {
+  // First of all: a page of another site could reach this server by DNS rebinding, with its own name as the host.
   if (!has_allowed_host(request, rules_)) return wrong_host(request);
   if (request.method != "GET" && request.method != "HEAD") {
     HttpAnswer refused = plain_answer(405, "only GET and HEAD\n");
@@ -113,13 +114,13 @@ HttpAnswer HttpSite::answer_asset(std::uint64_t hash) {
 }
 
 std::variant<HttpAnswer, ChosenProtocol> HttpSite::choose(const HttpRequest& request) {
-  // Who asks
+  // Origin of the request
   if (!has_allowed_host(request, rules_)) return wrong_host(request);
   for (const std::string_view origin : request.origins)
     if (request.origins.size() > 1 || !is_origin_allowed(origin, request.hosts.front(), rules_))
       return plain_answer(403, "Origin '" + shown(origin) + "': pages of this site may not connect\n");
 
-  // What is spoken
+  // Subprotocol
   const std::lock_guard lock(mutex_);
   const auto offered = header_list(request.subprotocols);
   std::string known;

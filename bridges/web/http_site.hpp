@@ -18,7 +18,7 @@
 
 namespace bridges {
 
-/// Head of an HTTP request, as far as the site reads it.
+/// Head of an HTTP request: the fields that the site reads.
 struct HttpRequest {
   std::string_view method;                       ///< such as `GET`
   std::string_view target;                       ///< path and query
@@ -51,7 +51,7 @@ class HttpSite {
   /// Chooses the subprotocol of a WebSocket, or answers why there is none.
   std::variant<HttpAnswer, ChosenProtocol> choose(const HttpRequest& request);
 
-  /// As in WebServer; for all threads.
+  /// See WebServer; thread-safe.
   void set_asset(std::uint64_t hash, std::span<const std::byte> bytes);
   void clear_assets();
   void add_protocol(std::string name, std::shared_ptr<WebProtocol> protocol);

@@ -36,7 +36,7 @@ ListenAddresses find_listen_addresses(const std::string& host) {
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* list = nullptr;
   const int error = host.empty() ? EAI_NONAME : getaddrinfo(host.c_str(), nullptr, &hints, &list);
-  if (error != 0) throw WebError("host '" + host + "' to listen at: " + gai_strerror(error));
+  if (error != 0) throw WebError("host '" + host + "' to listen on: " + gai_strerror(error));
   const std::unique_ptr<addrinfo, void (*)(addrinfo*)> owner(list, freeaddrinfo);
 
   // Each address once
@@ -46,7 +46,7 @@ ListenAddresses find_listen_addresses(const std::string& host) {
     if (!address.empty() && std::find(result.numeric.begin(), result.numeric.end(), address) == result.numeric.end())
       result.numeric.push_back(std::move(address));
   }
-  if (result.numeric.empty()) throw WebError("host '" + host + "' to listen at: has no address");
+  if (result.numeric.empty()) throw WebError("host '" + host + "' to listen on: has no address");
   result.only_this_machine = std::all_of(result.numeric.begin(), result.numeric.end(), is_loopback);
   return result;
 }

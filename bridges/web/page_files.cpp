@@ -132,6 +132,7 @@ std::string gzip(std::string_view bytes) {
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
   stream.avail_in = static_cast<uInt>(bytes.size());
   stream.next_out = reinterpret_cast<Bytef*>(result.data());
+  // deflateBound() is enough for one call to finish.
   stream.avail_out = static_cast<uInt>(result.size());
   deflate(&stream, Z_FINISH);
   result.resize(stream.total_out);

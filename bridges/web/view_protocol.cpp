@@ -120,6 +120,7 @@ void ViewProtocol::reply(int client, std::string json) {
   auto text = shared(std::move(json));
   {
     const std::lock_guard lock(box_mutex_);
+    // A page that does not read must not fill the memory of the run.
     if (box_.bytes + text->size() > max_queued_bytes) {
       ++box_.dropped;
     } else {
@@ -134,6 +135,7 @@ void ViewProtocol::send_message(int client, std::string_view channel, Text bytes
   if (clients() == 0) return;
   {
     const std::lock_guard lock(box_mutex_);
+    // Only the newest message of a channel waits: a slow page gets fewer, never old ones.
     Text& place = box_.messages[{client, std::string(channel)}];
     const std::size_t present = place ? place->size() : 0;
     if (box_.bytes - present + bytes->size() > max_queued_bytes) {
@@ -239,6 +241,7 @@ void ViewSession::receive(std::string_view bytes, bool is_text) {
   try {
     if (!is_text) throw WebError("binary messages are not part of shoal.view.v1");
     const ClientMessage message = parse_client_message(bytes);
+    // Nothing is sent before the greeting, which carries the token.
     if (!greeted_ && message.op != "hello")
       throw WebError("the first message must be 'hello', got '" + message.op + "'");
     if (message.op == "hello") return greet(message.token);

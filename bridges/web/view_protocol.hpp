@@ -44,7 +44,7 @@ class ViewProtocol final : public WebProtocol {
 
   std::unique_ptr<WebSession> open(WebLink& link) override;
 
-  /// As in WebServer.
+  /// See WebServer.
   int clients() const { return clients_.load(); }
   void send_state(std::span<const std::byte> state);
   void send_text(std::string json);
@@ -66,7 +66,7 @@ class ViewProtocol final : public WebProtocol {
     Text text, text_of_controller;
     std::uint64_t revision = 0;
   };
-  /// What the other threads have sent since deliver().
+  /// Input of other threads since deliver().
   struct Box {
     Text state;
     std::vector<Text> texts;
@@ -97,7 +97,7 @@ class ViewProtocol final : public WebProtocol {
   std::map<int, std::size_t> waiting_requests_;  // by client
   std::atomic<bool> has_requests_ = false;
 
-  // Of the thread of the server:
+  // Members of the server thread:
   std::vector<Retained> retained_;
   std::uint64_t revision_ = 0;
   Text last_state_;

@@ -57,7 +57,7 @@ class Peer {
 
 class WebSocketPeer;
 
-/// What all connections share.
+/// State shared by all connections.
 struct Hub {
   HttpSite& site;
   std::size_t max_clients;
@@ -154,7 +154,7 @@ class WebSocketPeer final : public Peer, public WebLink, public std::enable_shar
 };
 
 void WebSocketPeer::set_options() {
-  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own times
+  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own time-outs
   socket_.set_option(websocket::stream_base::timeout{request_time, silence, true});
   socket_.read_message_max(chosen_.protocol->max_message_bytes());
   socket_.auto_fragment(false);
@@ -227,6 +227,7 @@ void WebSocketPeer::wake() {
 }
 
 void WebSocketPeer::send() {
+  // One write at a time, as Beast requires.
   if (sending_ || closing_ || !session_) return;
   if (!session_->next(frame_)) {
     if (close_when_sent_) begin_close(*close_when_sent_);
@@ -248,7 +249,7 @@ void WebSocketPeer::close(WebClose code, std::string reason) {
   wake();
 }
 
-/// What was said before, such as why a run has ended, is still sent.
+/// Messages queued before, such as why a run has ended, are still sent.
 void WebSocketPeer::leave() {
   if (session_) return close(WebClose::going_away, "the server ends");
   begin_close({websocket::close_code::going_away, "the server ends"});
@@ -314,6 +315,7 @@ void HttpPeer::received(error_code error) {
     return send(plain_answer(431, "headers of more than 16 KiB\n"), false);
   if (error == http::error::body_limit || error == http::error::unexpected_body)
     return send(plain_answer(413, "requests have no body here\n"), false);
+  // The client has disconnected; no answer is possible.
   if (error == http::error::end_of_stream || error == http::error::partial_message) return cut();
   if (error && error.category() == make_error_code(http::error::bad_method).category())
     return send(plain_answer(400, "not a valid HTTP request: " + error.message() + "\n"), false);
@@ -426,7 +428,7 @@ void WebListener::Impl::open(const ListenOptions& options) {
     if (error != net::error::address_in_use) break;
   }
   if (acceptors.empty())
-    throw WebError("cannot listen at " + options.addresses.front() + ", port " + std::to_string(options.port) +
+    throw WebError("cannot listen on " + options.addresses.front() + ", port " + std::to_string(options.port) +
                    (error == net::error::address_in_use && options.port_tries > 1
                         ? " and the next " + std::to_string(options.port_tries - 1)
                         : "") +
@@ -491,7 +493,7 @@ void WebListener::Impl::end() {
   for (Peer* peer : std::vector<Peer*>(hub.peers.begin(), hub.peers.end())) peer->leave();
   if (hub.peers.empty()) return;
 
-  // Who does not say goodbye is cut off
+  // Clients that do not close are cut off
   hub.farewell.expires_after(farewell_time);
   hub.farewell.async_wait([this](error_code) {
     for (Peer* peer : std::vector<Peer*>(hub.peers.begin(), hub.peers.end())) peer->cut();

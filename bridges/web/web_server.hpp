@@ -20,7 +20,7 @@ namespace bridges {
 
 /// Settings of a WebServer.
 struct WebOptions {
-  std::string host = "127.0.0.1";    ///< address or name to listen at; the default listens at ::1 too, where it exists
+  std::string host = "127.0.0.1";    ///< address or name to listen on; the default listens on ::1 too, where it exists
   std::uint16_t port = 8765;         ///< first port to try; 0: any free one
   int port_tries = 20;               ///< number of ports to try: the next one if a port is taken
   std::string token;                 ///< what a page needs to steer; empty: 128 random bits
@@ -67,8 +67,8 @@ class WebServer final : public PageOutput {
   /// Removes all assets, for another scene.
   void clear_assets();
 
-  /// Returns the next request of a page, or nothing.  A page without the token is refused `control`, `play` and `seek`
-  /// here; other requests carry `may_control`.
+  /// Returns the next request of a page, or std::nullopt.  A page without the token is refused `control`, `play` and
+  /// `seek` here; other requests carry `may_control`.
   std::optional<ViewRequest> take_request();
   /// Sends a JSON text to one page; without effect when it has left.
   void reply(int client, std::string json);

@@ -73,6 +73,8 @@ Autopilot::Autopilot(const Params& params, const sim::DeviceContext& context)
   check_helm(context, params.helm);
   if (actuators_) check_level(*actuators_, params.gains.attitude, context);
   warn_of_no_speed(context);
+  // Setpoints that are not given are those of the start, so that an autopilot without a command keeps the vehicle
+  // where it is instead of moving it to zero.
   const HoldParams& hold = params.hold;
   desired_.speed_mps = hold.speed_mps;
   desired_.heading_rad =
@@ -121,7 +123,7 @@ std::vector<sim::PlannedPlace> Autopilot::planned_places() const {
 
 void Autopilot::note_depth(const Eigen::Vector2d& p_W, double depth_m) {
   const std::string fault = sim::depth_fault(world_, p_W, depth_m);
-  if (!fault.empty()) warnings_.keep_for_end(who_, "it was commanded to a place whose " + fault);
+  if (!fault.empty()) warnings_.keep_for_end(who_, "it was commanded to a position whose " + fault);
 }
 
 void Autopilot::note_start_of_route() {
@@ -167,9 +169,11 @@ void Autopilot::set_mode(Mode mode) {
     own ? start_route(params_.route(), params_.loop) : start_route(route_.points(), route_.loops());
     return note_start_of_route();
   }
+  // The estimate of the disturbance belongs to the old mode.
   if (mode_ == Mode::off || mode == Mode::off) law_.reset();
   desired_.station_m.reset();
   if (mode == Mode::station) desired_.station_m = place();
+  // After a time in which others drove, the depth of before is no longer wanted.
   if (mode_ == Mode::off) {
     depth_desired_m_ = depth_m();
     altitude_desired_m_.reset();
@@ -252,6 +256,7 @@ void Autopilot::follow_route(double dt_s) {
     desired_.heading_rad = aim.heading_rad;
     return;
   }
+  // A craft with fins cannot stand still without losing them, so it may circle at the end.
   if (params_.at_end == AtEnd::circle) {
     start_circle(route_.to().p_W);
     return follow_circle();
@@ -278,8 +283,10 @@ void Autopilot::follow_circle() {
 
 void Autopilot::measure(const sim::SenseContext& context) {
   const bool driving = mode_ != Mode::off && !vehicle_.systems().estopped && !faults_.silent();
+  // NaN stands for what this mode does not control.
   reading_ = {mode_, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, nothing, false};
   if (!driving) {
+    // An integral that grows while something else drives would jump at the next start.
     law_.reset();
     given_ = {};
     return;
@@ -303,6 +310,7 @@ void Autopilot::drive(const sim::SenseContext& context, const Demand& demand) {
   if (desired_.station_m) reading_.distance_m = (*desired_.station_m - place()).norm();
   if (!actuators_) return drive_helm(demand, context.now);
   const CraftMotion motion = motion_of(context.world);
+  // Forces are shared for the water at the vehicle: a propeller gives thrust in proportion to the density.
   given_ = actuators_->share(demand.wrench, motion.v_S, context.world.hydrodynamics().water_at(body_).density_kgpm3);
   reading_.saturated = given_.saturated;
   actuators_->publish(context.now);
@@ -385,6 +393,7 @@ void take_waypoints(Autopilot& autopilot, std::span<const std::byte> payload) {
   if (command.n < 1) throw std::runtime_error("field 'n' must be at least 1, got " + std::to_string(command.n));
   check("speed_mps", command.speed_mps, 0, 100);
   for (std::size_t i = 0; i < command.x_m.size(); ++i) {
+    // NaN means 'as before' in depth and speed, but a waypoint without a place is none.
     if (std::isnan(command.x_m[i]) || std::isnan(command.y_m[i]))
       throw std::runtime_error("a waypoint must have x_m and y_m");
     check("x_m", command.x_m[i], -far_m, far_m);

@@ -19,7 +19,7 @@ class waypoints_command_t;
 namespace devices {
 
 /// Autopilot of a marine vehicle: controls heading, depth or altitude and speed, follows waypoints, or keeps station.
-/// It uses the true motion of the body it is mounted on, and publishes commands on the channels of its actuators at its
+/// Uses the true motion of the body it is mounted on, and publishes commands on the channels of its actuators at its
 /// rate, as an external program would.
 class Autopilot final : public sim::Sensor {
  public:

@@ -26,7 +26,7 @@ class AutopilotActuators {
   CraftAbilities abilities() const;
   /// Returns true when the thrusters control an axis of the wrench.
   bool gives(int axis) const { return allocation_ && allocation_->gives(axis); }
-  /// What the actuators give of a wrench.
+  /// Part of a wrench that the actuators give.
   struct Given {
     Wrench wrench = Wrench::Zero();  ///< in the frame of the body, N and N m
     bool saturated = false;          ///< it is not the wrench demanded

@@ -7,15 +7,15 @@ namespace devices {
 
 void HoldParams::read(sim::ParamReader& in) {
   in.read("speed_mps", speed_mps, sim::between(-100, 100), "ahead, through the water");
-  in.read("heading_deg", heading_deg, sim::between(-360, 360), "counter-clockwise from east; unset: as at the start");
-  in.read("depth_m", depth_m, sim::any_place(), "below the still surface; unset: as at the start");
+  in.read("heading_deg", heading_deg, sim::between(-360, 360), "counter-clockwise from east; unset: that at the start");
+  in.read("depth_m", depth_m, sim::any_place(), "below the still surface; unset: that at the start");
   in.read("altitude_m", altitude_m, sim::above(0), "over the bottom, in place of a depth");
   if (!in.describing() && depth_m && altitude_m) in.error("altitude_m", "give 'depth_m' or 'altitude_m', not both");
 }
 
 void StationParams::read(sim::ParamReader& in) {
   std::vector<double> numbers;
-  in.read("at_m", numbers, sim::any_place(), "[east, north] in the world frame; unset: where it is at the start");
+  in.read("at_m", numbers, sim::any_place(), "[east, north] in the world frame; unset: its position at the start");
   if (in.describing() || numbers.empty()) return;
   if (numbers.size() != 2) return in.error("at_m", "'at_m' must be two numbers, east and north");
   place_m = Eigen::Vector2d(numbers[0], numbers[1]);
@@ -31,7 +31,7 @@ void AutopilotParams::read(sim::ParamReader& in) {
   in.read("thruster_weights", thruster_weights, sim::above_to(0, 1e6),
           "one for each thruster: twice the weight means half the use; unset: all 1");
   in.read("axes", axes,
-          "those of surge, sway, heave, roll, pitch and yaw that the thrusters control; unset: as many as possible, "
+          "axes that the thrusters control, of surge, sway, heave, roll, pitch and yaw; unset: as many as possible, "
           "only surge when there are fins");
   // Setpoints and route.
   in.read("hold", hold, "setpoints held at the start");

@@ -11,7 +11,7 @@ void HoldGains::read(sim::ParamReader& in) {
   in.read("damping", damping, sim::between(0.3, 10), "1: no overshoot");
   in.read("rate_max", rate_max, sim::above(0), "rate limit: m/s, or rad/s for an angle");
   in.read("integral", integral, sim::between(0, 0.5),
-          "bandwidth of the estimate of the disturbance over that of the hold; 0: a steady error remains");
+          "bandwidth of the disturbance estimate over that of the controller; 0: a steady error remains");
 }
 
 double Disturbance::update(double rate, double given, double dt_s, double weight) {

@@ -19,11 +19,11 @@ Eigen::Vector2d at_most(const Eigen::Vector2d& v, double length) {
 }  // namespace
 
 void HelmGains::read(sim::ParamReader& in) {
-  in.read("heading", heading, "hold of the heading, rad and rad/s");
-  in.read("depth", depth, "hold of depth or altitude by thrusters, m and m/s");
-  in.read("attitude", attitude, "hold of roll and pitch, rad and rad/s");
-  in.read("position", position, "hold of a station, m and m/s");
-  in.read("speed_bandwidth_radps", speed_bandwidth_radps, sim::above_to(0, 100), "hold of the speed");
+  in.read("heading", heading, "heading control, rad and rad/s");
+  in.read("depth", depth, "control of depth or altitude by thrusters, m and m/s");
+  in.read("attitude", attitude, "control of roll and pitch, rad and rad/s");
+  in.read("position", position, "station keeping, m and m/s");
+  in.read("speed_bandwidth_radps", speed_bandwidth_radps, sim::above_to(0, 100), "speed control");
   in.read("speed_integral", speed_integral, sim::between(0, 1), "gain of the integral of its error");
   in.read("climb_gain_per_s", climb_gain_per_s, sim::above_to(0, 10), "with fins: climb in m/s per m of depth error");
   in.read("steerage_mps", steerage_mps, sim::above(0),
@@ -57,7 +57,7 @@ void HelmLaw::hold_station_ahead(const CraftMotion& motion, const Eigen::Vector2
   // Velocity through the water: towards the station, and against the drift.
   const Eigen::Vector2d desired = at_most(k * error, gains.rate_max) - drift_mps_;
   if (desired.norm() < idle_mps) return;
-  // Head along it; advance only as far as the heading is aligned.
+  // Head along it; advance only in proportion to the alignment of the heading.
   demand.heading_rad = std::atan2(desired.y(), desired.x());
   const double turn = sim::wrap_angle(demand.heading_rad - sim::yaw_of(motion.X_WS.linear()));
   demand.speed_mps = desired.norm() * std::max(0.0, std::cos(turn));

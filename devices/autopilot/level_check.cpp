@@ -36,6 +36,8 @@ double top_mps(AutopilotActuators& actuators, const sim::CoefficientModel& model
 void check_level(AutopilotActuators& actuators, const HoldGains& attitude, const sim::DeviceContext& context) {
   const sim::HydrodynamicsConfig* water = hydrodynamics_of(context);
   const CraftAbilities craft = actuators.abilities();
+  // The waterline holds a surface craft upright, and fins in the flow a slender hull. Only a hull that thrusters
+  // alone hold can be turned over by the Munk moment.
   if (water == nullptr || water->waterline || craft.fins) return;
   const sim::CoefficientModel model(*water, context.world.config().physics.gravity_mps2);
   double needed_radps = 0;
@@ -44,6 +46,7 @@ void check_level(AutopilotActuators& actuators, const HoldGains& attitude, const
   for (const LevelMotion motion : {LevelMotion::ahead, LevelMotion::sideways}) {
     const int axis = motion == LevelMotion::ahead ? 4 : 3;
     if (motion == LevelMotion::sideways && !craft.sideways) continue;
+    // The attitude loop acts as a stiffness of inertia times bandwidth squared, which adds to the righting moment.
     const double inertia = craft.mass[axis], w = actuators.gives(axis) ? attitude.bandwidth_radps : 0;
     const double tipping = sim::tipping_mps(model, motion, inertia * w * w);
     if (std::isinf(tipping)) continue;
@@ -66,7 +69,7 @@ void check_level(AutopilotActuators& actuators, const HoldGains& attitude, const
   if (held) return warnings.note(place, who, up_to);
   warnings.warn(
       place, who,
-      up_to + ": faster, the Munk moment of the added mass turns it over" +
+      up_to + ": above it, the Munk moment of the added mass turns it over" +
           (std::isinf(needed_radps) ? ", for the thrusters do not control its tilt"
                                     : ", unless 'gains: attitude: bandwidth_radps' is above " + rounded(needed_radps)));
 }

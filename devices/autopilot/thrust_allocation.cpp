@@ -37,7 +37,7 @@ ThrustAllocation::ThrustAllocation(std::vector<ThrusterPlace> thrusters, const s
   for (std::size_t n = 1; n <= axes_.size(); ++n)
     if (!controllable({axes_.begin(), axes_.begin() + static_cast<std::ptrdiff_t>(n)}))
       throw std::invalid_argument("the thrusters cannot give " + wrench_axes()[static_cast<std::size_t>(axes_[n - 1])] +
-                                  (n > 1 ? " beside the axes before it" : ""));
+                                  (n > 1 ? " in addition to the axes before it" : ""));
   if (axes_.empty()) throw std::invalid_argument("the thrusters produce no force");
   // Weighted pseudo-inverse W^-1 B^T (B W^-1 B^T)^-1.
   const Eigen::Index rows = static_cast<Eigen::Index>(axes_.size());

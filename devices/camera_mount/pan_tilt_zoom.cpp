@@ -48,10 +48,11 @@ void PanTiltZoom::Params::read(sim::ParamReader& in) {
   in.read_name("tilt", tilt, "joint_servo that tilts; unset: none");
   in.read_name("camera", camera, "camera that zooms, from its fov_deg on; unset: none");
   in.read_deg("pan_speed_degps", pan_speed_radps, sim::above_to(0, 36000),
-              "largest speed; that of the servo counts too");
+              "maximum speed; the limit of the servo applies too");
   in.read_deg("tilt_speed_degps", tilt_speed_radps, sim::above_to(0, 36000),
-              "largest speed; that of the servo counts too");
-  in.read_deg("zoom_speed_degps", zoom_speed_radps, sim::above_to(0, 36000), "largest change of the field of view");
+              "maximum speed; the limit of the servo applies too");
+  in.read_deg("zoom_speed_degps", zoom_speed_radps, sim::above_to(0, 36000),
+              "maximum rate of change of the field of view");
   in.read_deg("min_fov_deg", min_fov_rad, sim::above_to(0, 360), "horizontal field of view when zoomed in");
   in.read("max_fov_deg", max_fov_deg, sim::above_to(0, 360), "when zoomed out; unset: fov_deg of the camera");
   in.read("angle_noise", angle_noise, "error of the reported positions of pan and tilt, rad");
@@ -93,6 +94,7 @@ ServoOfVehicle PanTiltZoom::find_servo(const sim::DeviceContext& context, const 
   for (const ServoOfVehicle& servo : servos_of(context.vehicle.config())) {
     known.push_back(servo.device);
     if (!servo.is_called(name)) continue;
+    // A pan or tilt is an angle, and a slider moves in meters.
     if (context.joint(servo.params->joint).type() == sim::JointType::slider)
       refuse(context, fmt::format("'{}' must turn: the joint of '{}' is a slider", key, name));
     return servo;

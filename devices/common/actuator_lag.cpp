@@ -9,8 +9,8 @@ namespace devices {
 void LagParams::read(sim::ParamReader& in) {
   in.read("lag_s", lag_s, sim::at_least(0), "time constant of a first-order lag; 0: none");
   in.read_or_word("natural_frequency_radps", natural_frequency_radps, sim::between(1e-3, 1e5), {"none"},
-                  "it follows as an oscillator of second order of this frequency, instead of lag_s");
-  in.read("damping_ratio", damping_ratio, sim::above_to(0, 1e3), "damping ratio of the second order");
+                  "natural frequency of a second-order response, instead of lag_s");
+  in.read("damping_ratio", damping_ratio, sim::above_to(0, 1e3), "damping ratio of the second-order response");
   if (lag_s > 0 && natural_frequency_radps > 0)
     in.error("natural_frequency_radps", "'lag_s' and 'natural_frequency_radps' exclude each other");
 }
@@ -52,6 +52,7 @@ void Lag::prepare(double h) {
 }
 
 double Lag::follow(double target, double step_s) {
+  // The coefficients are exact for a constant target, whatever the step, and are computed once.
   if (step_s != prepared_for_s_) prepare(step_s);
   const double rest = value_ - target;
   const double max = rate_limit_ * step_s;
@@ -61,6 +62,7 @@ double Lag::follow(double target, double step_s) {
   if (std::abs(change) > max)
     value_ += std::copysign(max, change);
   else
+    // Written so that without a lag the value is exactly the target.
     value_ = target + (rest + change);
   return value_;
 }

@@ -62,11 +62,13 @@ std::vector<NmeaLines::Line> NmeaLines::add(std::span<const std::byte> bytes) {
   std::vector<Line> lines;
   for (const std::byte byte : bytes) {
     const char c = static_cast<char>(byte);
+    // Either character ends a line, so that CR LF gives an empty line, which is none.
     if (c == '\n' || c == '\r') {
       if (!line_.empty()) lines.push_back({std::move(line_), too_long_});
       line_.clear();
       too_long_ = false;
     } else if (line_.size() < longest) {
+      // A sender without line ends must not fill the memory; the rest of such a line is dropped and the line marked.
       line_.push_back(c);
     } else {
       too_long_ = true;

@@ -25,6 +25,7 @@ void check_rays(sim::ParamReader& in, std::span<const RayFactor> factors) {
   if (rays <= max_rays) return;
   const std::string text =
       fmt::format("{} must be at most {:.0f} rays in a sample, got {} = {:.0f}", keys, max_rays, counts, rays);
+  // At the key given last, the one most likely to be changed; else the defaults alone are too many.
   last_given ? in.error(last_given, text) : in.error(text);
 }
 

@@ -194,7 +194,7 @@ double AcousticModem::power_W() const {
   return transducer_.busy_until() > world_.now() ? params_.transmit_power_W : 0;
 }
 
-/// It is not idle while it transmits, because of the power that this takes.
+/// A modem is not idle while it transmits, because of the power that this takes.
 bool AcousticModem::idle() const {
   return queue_.empty() && arrived_.empty() && received_.empty() && !serial_ &&
          transducer_.busy_until() <= world_.now();
@@ -230,6 +230,7 @@ void AcousticModem::receive(const sim::Reception& reception) {
   if (!packet.destination.empty() && packet.destination != vehicle_.name() && !params_.promiscuous) return;
   packet.sent = reception.sent;
   packet.arrived = reception.started;
+  // Both times are read by the clocks of their vehicles: the travel time of a one-way range has the errors of both.
   packet.arrived_reading = vehicle_.clock().reading(reception.started);
   packet.snr_dB = reception.sinr.dB();
   packet.level_dB = reception.level.dB();
@@ -265,6 +266,7 @@ void AcousticModemReporter::report(sim::Time, sim::Publisher& out) const {
     shoal::acoustic_received_t message{};
     message.utime = out.utime_elsewhere(packet.arrived, packet.arrived_reading);
     message.sent_utime = out.utime_elsewhere(packet.sent, packet.sent_reading);
+    // From the stamps, as a real modem computes it, and not the true travel time.
     message.travel_time_s = static_cast<double>(message.utime - message.sent_utime) * 1e-6;
     message.source = packet.source;
     message.destination = packet.destination;

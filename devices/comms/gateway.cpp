@@ -26,11 +26,11 @@ void Gateway::Params::read(sim::ParamReader& in) {
   in.read("between", between, "two devices of the vehicle of type modem or acoustic_modem");
   in.read("destinations", destinations,
           "vehicles of the world that the first and the second modem send to; empty text: broadcast");
-  in.read("delay_s", delay_s, sim::between(0, 3600), "between arrival at one and sending by the other");
+  in.read("delay_s", delay_s, sim::between(0, 3600), "delay between arrival at one and sending by the other");
   in.read("repeat_s", repeat_s, sim::between(0, 86400),
           "time for which the same bytes are not forwarded again; 0: always forwarded");
-  in.read("name_source", name_source, "puts the name of the sending vehicle and a colon before the bytes");
-  in.read("only_prefix", only_prefix, "forwards only messages that start with this text; empty: all");
+  in.read("name_source", name_source, "put the name of the sending vehicle and a colon before the bytes");
+  in.read("only_prefix", only_prefix, "forward only messages that start with this text; empty: all");
   in.read("queue_messages", queue_messages, sim::at_least(1),
           "maximum number of delayed messages; further ones are rejected");
   if (in.describing()) return;
@@ -56,6 +56,7 @@ Gateway::Gateway(const Params& params, const sim::DeviceContext& context)
       continue;
     fail("'between' names no modem or acoustic_modem '" + name + "'");
   }
+  // A modem of two gateways would forward every message twice.
   for (const sim::DeviceConfig& other : context.vehicle.config().devices) {
     if (other.type != "gateway" || other.name == context.config.name) continue;
     const auto& names = static_cast<const sim::detail::ParamsOf<Params>&>(*other.params).params.between;
@@ -66,7 +67,7 @@ Gateway::Gateway(const Params& params, const sim::DeviceContext& context)
   for (const std::string& name : params.destinations) {
     if (name == context.vehicle.name()) fail("'destinations' names its own vehicle");
     if (!name.empty() && named_vehicle(context.world, name) == nullptr)
-      fail("'destinations' names no vehicle of the world '" + name + "'");
+      fail("'destinations' names a vehicle that is not in the world: '" + name + "'");
   }
 }
 

@@ -63,6 +63,7 @@ void Micromodem::Params::read(sim::ParamReader& in) {
   in.read("receiver", receiver, "properties of its receiver");
   in.read("lbl", lbl, "transponders that $CCPDT, $CCPNT and $CCPGT ask");
   in.read("serial", serial, "pseudo-terminal or FIFO for programs that use no LCM");
+  // The revision is sent in a sentence, where these characters separate fields or begin the checksum.
   const auto is_plain = [](char c) { return c > ' ' && c < 127 && c != ',' && c != '*' && c != '$'; };
   if (!in.describing() && (revision.empty() || !std::all_of(revision.begin(), revision.end(), is_plain)))
     in.error("revision",
@@ -197,6 +198,7 @@ MicromodemSide::Sound Micromodem::transmit(const MicromodemPacket& packet, sim::
   signal.network = params_.network;
   signal.code = packet.code();
   signal.payload = packet.payload();
+  // A third modem that initiates a cycle addresses its source, which then sends the data.
   const int to = packet.kind == MicromodemPacket::Kind::cycle_init && packet.source != address_ ? packet.source
                                                                                                 : packet.destination;
   signal.to = {group(), to == micromodem_broadcast ? "" : std::to_string(to)};

@@ -69,6 +69,7 @@ std::string iso_time(std::int64_t utc_us) {
 
 std::array<int, 3> micromodem_generation(const std::string& revision) {
   std::array<int, 3> numbers{};
+  // Anything after the numbers, such as a letter, does not count.
   const char* at = revision.data();
   const char* const end = at + revision.size();
   for (int& number : numbers) {

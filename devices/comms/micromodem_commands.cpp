@@ -190,6 +190,7 @@ void MicromodemProtocol::send_ping(const NmeaSentence& in, sim::Time now) {
   packet.kind = MicromodemPacket::Kind::ping;
   packet.source = who->first, packet.destination = who->second;
   const auto sound = send(packet, now, settings_.on("SNV"));
+  // The modem gives up on an answer after the turnaround and the travel times of the maximum range, there and back.
   ping_ = Ping{who->second, sound.begin, sound.begin + sim::from_seconds(micromodem_turnaround_s + 6)};
 }
 
@@ -197,6 +198,7 @@ void MicromodemProtocol::send_mini(const NmeaSentence& in, sim::Time now) {
   const auto who = addresses(in, 1, now);
   if (!who) return;
   const std::string& hex = in.at(3);
+  // A mini packet carries 13 bits.
   const bool good = !hex.empty() && hex.size() <= 4 &&
                     hex.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos &&
                     std::stoi(hex, nullptr, 16) <= 0x1fff;

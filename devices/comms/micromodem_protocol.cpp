@@ -225,6 +225,7 @@ void MicromodemProtocol::received_cycle(const MicromodemPacket& packet, const Mi
   side_.emit(body);
   if (packet.kind == Kind::data) return;
   emit_statistics(packet, arrival, 0);
+  // The cycle asks this modem to send: it gathers the data from its host first.
   if (packet.source == address()) {
     if (cycle_ || arrival.ended < sending_until_) return;
     return gather({packet.source, packet.destination, packet.rate, packet.frame_count, packet.ack, true, {}, {}},
@@ -302,6 +303,7 @@ void MicromodemProtocol::report_beacons(sim::Time now) {
     body += ",";
     if (!beacon_ping_->is_requested[i] || !beacon_ping_->answered[i]) continue;
     const double both_s = side_.elapsed_s(beacon_ping_->sent, *beacon_ping_->answered[i]);
+    // The travel time of one way, as the modem reports it; the turnaround is the user's setting and may be wrong.
     body += fmt::format("{:.4f}", (both_s - beacon_ping_->turnaround_s) / 2);
   }
   side_.emit(body + "," + time_of_day(beacon_ping_->sent, 2));

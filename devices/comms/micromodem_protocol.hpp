@@ -171,7 +171,7 @@ class MicromodemProtocol : private MicromodemPending {
   void error(const std::string& module, int number, const std::string& text, sim::Time now);
   /// Returns whether the modem is busy, and reports an error then.
   bool busy(const char* module, sim::Time now);
-  /// Returns source and destination; reports an error and returns none when they are invalid.
+  /// Returns source and destination; reports an error and returns std::nullopt if they are invalid.
   std::optional<std::pair<int, int>> addresses(const NmeaSentence& in, std::size_t first, sim::Time now);
 
   void gather(Cycle cycle, sim::Time now);

@@ -86,6 +86,7 @@ void Modem::send(sim::Time, std::string destination, sim::Bytes data) {
   if (!known)
     throw std::runtime_error("'destination' names no vehicle with a modem in network '" + params_.network + "': '" +
                              sim::shortened(sim::printable(destination)) + "'");
+  // The oldest message gives way, so that a slow link carries the latest news.
   if (queue_.size() >= static_cast<std::size_t>(params_.queue_messages)) {
     queue_.pop_front();
     ++dropped_;
@@ -141,6 +142,7 @@ sim::SignalLoss Modem::loss_to(const Modem& receiver) const {
   const sim::Zones& zones = world_.zones();
   const sim::Medium& medium = world_.medium();
   for (const Modem* end : {this, &receiver}) {
+    // Cheap tests first: the ray through the world is the last.
     if (zones.denied(sim::ZoneFlag::radio_denied, end->p_WS())) return sim::SignalLoss::noise;
     if (!carries(medium, params_.through, end->p_WS())) return sim::SignalLoss::blocked;
   }

@@ -56,6 +56,7 @@ AckermannDrive::AckermannDrive(const Params& params, const sim::DeviceContext& c
     : params_(params),
       vehicle_(context.vehicle),
       steer_{&wheel_joint(context, params.left_steer_joint), &wheel_joint(context, params.right_steer_joint)} {
+  // Places of the wheels count from the middle of the front axle, about which Ackermann's condition is written.
   const sim::Vector3d front_V = (joint_config(vehicle_, params.left_steer_joint).anchor_m +
                                  joint_config(vehicle_, params.right_steer_joint).anchor_m) /
                                 2;
@@ -85,6 +86,8 @@ void AckermannDrive::take_lengths(const sim::DeviceContext& context) {
                as_it_is);
   check_length(context, {"wheel_radius_m", params_.wheel_radius_m, radius_m}, {},
                "it drives {} times as fast as commanded", inverse);
+  // A length that is configured differently from the joints is legal: it makes the errors of a badly
+  // calibrated drive. The warning says how large they are.
   of_joints_ = {wheelbase_m.value_or(of_joints_.wheelbase_m), track_m.value_or(of_joints_.track_m),
                 radius_m.value_or(of_joints_.wheel_radius_m)};
   lengths_ = lengths_of(params_);

@@ -54,6 +54,7 @@ NaiveDrive::NaiveDrive(const Params& params, const sim::DeviceContext& context)
   const auto body_of = [&](const sim::DeviceConfig& device) {
     return device.body.empty() ? bodies.front().name : device.body;
   };
+  // Two drives of one body would set its pose alternately.
   for (const sim::DeviceConfig& device : context.vehicle.config().devices)
     if (device.type == "naive_drive" && device.name != context.config.name &&
         body_of(device) == body_of(context.config))
@@ -90,7 +91,7 @@ double NaiveDrive::desired_turn(double speed_share) const {
   if (std::isnan(heading_target_rad_))
     return rudder_ * params_.max_turn_rate_radps * std::clamp(speed_share, -1.0, 1.0);
   const double error = sim::wrap_angle(heading_target_rad_ - yaw_rad_);
-  // At most the rate that reaches the heading in one step.
+  // No faster than the rate that reaches the heading in one step.
   const double gain = std::min(params_.heading_gain_per_s, 1 / step_s_);
   return std::clamp(gain * error, -max, max);
 }
@@ -219,6 +220,7 @@ void NaiveDriveController::receive(sim::Time, std::span<const std::byte> payload
   }
   const auto command = shoal::decode<shoal::helm_command_t>(payload, Finite::any);
   for (const double value : {command.speed_mps, command.heading_rad, command.depth_m})
+    // NaN is allowed in a helm command: as before.
     if (std::isinf(value)) throw std::runtime_error("speed, heading and depth must not be infinite");
   if (!std::isnan(command.altitude_m)) throw std::runtime_error("it holds no altitude: altitude_m must be NaN");
   if (drive_.surface() && !std::isnan(command.depth_m))

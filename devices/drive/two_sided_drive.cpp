@@ -36,6 +36,7 @@ TwoSidedDrive::TwoSidedDrive(const Params& params, const sim::DeviceContext& con
     : params_(params), left_(context, left_joints), right_(context, right_joints) {
   const sim::VehicleConfig& vehicle = context.vehicle.config();
   joint_track_m_ = track_m_of(vehicle, left_joints, right_joints);
+  // Wheels that scrub turn a vehicle as if they were farther apart than they are.
   usual_track_m_ = scrubs ? scrubbing_track_m_of(vehicle, left_joints, right_joints) : joint_track_m_;
   std::vector<std::string> joints = left_joints;
   joints.insert(joints.end(), right_joints.begin(), right_joints.end());

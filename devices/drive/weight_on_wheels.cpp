@@ -128,6 +128,7 @@ bool weight_is_determined(const std::vector<Support>& supports) {
 void warn_of_shared_weight(const sim::DeviceContext& context, const std::vector<std::string>& driven_joints) {
   const sim::WorldConfig& world = context.world.config();
   const sim::VehicleConfig& vehicle = context.vehicle.config();
+  // Soft contacts share the weight by their stiffness, so that it is determined.
   if (world.physics.gravity_mps2 == 0 || is_soft(world) || gives(vehicle)) return;
   const auto supports = supports_of(vehicle, driven_joints);
   if (!supports || weight_is_determined(*supports)) return;

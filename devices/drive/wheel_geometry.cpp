@@ -53,6 +53,7 @@ WheelGeometry wheel_geometry(const sim::VehicleConfig& vehicle, const std::strin
   WheelGeometry wheel;
   wheel.center_V_m = joint.anchor_m;
   wheel.axis_V = (joint.type == sim::JointType::hinge2 ? joint.axis2 : joint.axis1).axis.normalized();
+  // The wheel is usually the second body of a joint; a joint may name it first.
   for (const std::size_t end : {1u, 0u}) {
     if (end >= joint.bodies.size()) continue;
     const sim::BodyConfig* body = body_named(vehicle, joint.bodies[end]);
@@ -111,6 +112,7 @@ std::optional<double> wheelbase_m_of(const sim::VehicleConfig& vehicle,
 
 void check_length(const sim::DeviceContext& context, const LengthOfDevice& length, const AllowedRatio& allowed,
                   const std::string& effect, double (*factor)(double ratio)) {
+  // A length that was not given is taken from the joints, and cannot contradict them.
   if (!length.given_m || !length.real_m || !(*length.real_m > 0)) return;
   const double ratio = *length.given_m / *length.real_m;
   if (ratio >= allowed.low && ratio <= allowed.high) return;

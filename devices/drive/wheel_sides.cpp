@@ -42,6 +42,7 @@ void warn_of_backward_wheels(const sim::DeviceContext& context, const std::vecto
   for (const std::string& name : joints) {
     const sim::JointConfig& joint = joint_config(context.vehicle, name);
     const WheelGeometry wheel = wheel_geometry(vehicle, name);
+    // Only axes that mostly point across the vehicle roll it.
     if (std::abs(wheel.axis_V.y()) < std::max(std::abs(wheel.axis_V.x()), std::abs(wheel.axis_V.z()))) continue;
     if (sense_of(joint, vehicle, wheel.body) * wheel.axis_V.y() < 0)
       warn_of_joint(context, joint,
@@ -55,6 +56,7 @@ void warn_of_backward_steering(const sim::DeviceContext& context, const std::vec
   for (const std::string& name : joints) {
     const sim::JointConfig& joint = joint_config(context.vehicle, name);
     const sim::Vector3d axis_V = joint.axis1.axis.normalized();
+    // An axis that lies nearly flat does not steer, and is reported elsewhere.
     if (std::abs(axis_V.z()) < 0.5) continue;
     const sim::BodyConfig* wheel = joint.type == sim::JointType::hinge2 ? wheel_geometry(vehicle, name).body : nullptr;
     if (sense_of(joint, vehicle, wheel) * axis_V.z() < 0)

@@ -12,7 +12,7 @@ void Ahrs::Params::read(sim::ParamReader& in) {
   in.read("tilt_noise", tilt_noise, "error angles about east and north, rad (mostly gauss_markov_std)");
   in.read("heading_noise", heading_noise, "error angle about up, counter-clockwise, rad");
   double drift_deg_per_h = sim::radians_to_degrees(heading_drift_rad_per_s) * 3600;
-  in.read("heading_drift_deg_per_h", drift_deg_per_h, sim::any_number(), "steady growth of the heading's error");
+  in.read("heading_drift_deg_per_h", drift_deg_per_h, sim::any_number(), "constant drift of the heading");
   heading_drift_rad_per_s = sim::degrees_to_radians(drift_deg_per_h) / 3600;
   in.read("gyro_noise", gyro_noise, "error of each axis of the angular velocity, rad/s");
   in.read("accel_noise", accel_noise, "error of each axis of the specific force, m/s^2");

@@ -40,6 +40,7 @@ void Compass::Params::read(sim::ParamReader& in) {
   in.read("soft_iron", soft_iron, sim::any_number(), "3x3 matrix on the field, 9 numbers by rows");
   if (!in.describing() && soft_iron.size() != 9) {
     in.error("soft_iron", "'soft_iron' must have 9 numbers, got " + std::to_string(soft_iron.size()));
+    // The error is reported; measuring continues with the identity, which expects nine numbers.
     soft_iron = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   }
   in.read_choice("tilt_compensation", tilt_compensation,
@@ -83,10 +84,12 @@ void Compass::measure(const sim::SenseContext& context) {
 }
 
 void Compass::disturb(double dt_s, sim::Random& random) {
+  // The filter runs in any mode, so that a change of the mode finds it settled.
   const sim::Vector3d by_force_S = tilt_filter_.apply(strapdown_.f_S(), dt_s);
   if (params_.tilt_compensation == TiltCompensation::none) up_S_ = sim::Vector3d::UnitZ();
   if (params_.tilt_compensation == TiltCompensation::accelerometer) up_S_ = by_force_S;
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> soft_iron(params_.soft_iron.data());
+  // Soft iron distorts the earth's field, hard iron adds to it.
   reading_.field_S_uT = soft_iron * reading_.field_S_uT + params_.hard_iron_uT;
   field_noise_.apply(std::span<double>(reading_.field_S_uT.data(), 3), dt_s, random);
   double heading_rad = heading_of(reading_.field_S_uT, up_S_);

@@ -14,11 +14,13 @@ double gauss_markov_allan_deviation(double correlation_times) {
 
 InertialErrors::InertialErrors(const InertialParams& params, const sim::NoiseParams& noise,
                                const sim::DeviceContext& context)
+    // A data sheet gives densities of noise; a sample's deviation follows from the interval.
     : params_(params),
       noise_(context.noise(noise, 3)),
       fault_(*context.noise_origin(noise).fault),
       nominal_dt_s_(context.config.rate_hz > 0 ? 1 / context.config.rate_hz
                                                : sim::to_seconds(context.world.step_time())) {
+  // Drawn once for each unit, from its own stream: other noise does not change which unit it is.
   sim::Random random(context.world.seed(), context.full_name() + "#" + noise.key + "/unit");
   for (int i = 0; i < 3; ++i) drawn_bias_[i] = random.gaussian();
   for (int row = 0; row < 3; ++row)

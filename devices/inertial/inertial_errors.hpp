@@ -62,7 +62,7 @@ class InertialErrors {
   sim::Matrix3d drawn_matrix_;
   sim::Matrix3d matrix_ = sim::Matrix3d::Identity();
   sim::Vector3d turn_on_bias_ = sim::Vector3d::Zero();
-  // For the interval cached_dt_s_.
+  // Values for the interval cached_dt_s_.
   double cached_dt_s_ = -1;
   double white_std_ = 0, kept_ = 0, fresh_std_ = 0, walk_std_ = 0;
   bool started_ = false;

@@ -27,6 +27,7 @@ Bumper::Bumper(const Params& params, const sim::DeviceContext& context)
       if (physics.parts()[i].group == vehicle_.group() && physics.parts()[i].body == context.body.number())
         parts_.push_back(static_cast<int>(i));
   if (parts_.empty()) refuse(context, "no part of it can touch anything");
+  // In order, for a binary search at each contact.
   std::sort(parts_.begin(), parts_.end());
   physics_.watch_contacts(vehicle_.group());
 }
@@ -60,6 +61,7 @@ void Bumper::look() {
     force_N += places.back().force_N;
   }
   looked_ = true;
+  // Between two samples the strongest touch counts: a short bump would be missed at the rate of the device.
   if (places.empty() || force_N <= max_force_N_) return;
   max_force_N_ = force_N;
   pressed_ = std::move(places);

@@ -109,9 +109,10 @@ void JointDrive::check_stops(const Axis& axis, const Settings& settings) const {
     const std::string error = std::isfinite(stop) ? sim::error_of_stop(joint_.type(), stop) : "";
     if (!error.empty()) throw std::runtime_error(text(error));
   }
+  // An infinite stop means none, but only on its own side.
   if (settings.low_stop == std::numeric_limits<double>::infinity() ||
       settings.high_stop == -std::numeric_limits<double>::infinity())
-    throw std::runtime_error(text("no stop is -infinity for 'low_stop' and +infinity for 'high_stop'"));
+    throw std::runtime_error(text("to remove a stop, give -infinity as 'low_stop' or +infinity as 'high_stop'"));
 }
 
 JointDrive::Axis JointDrive::with(Axis axis, const Settings& settings) const {
@@ -120,6 +121,7 @@ JointDrive::Axis JointDrive::with(Axis axis, const Settings& settings) const {
     throw std::runtime_error("'velocity' and 'max_force' must not be infinite");
   if (settings.max_force < 0)
     throw std::runtime_error("'max_force' must be >= 0, got " + sim::number_text(settings.max_force));
+  // NaN in a command means 'as before', the convention of all commands with several numbers.
   const auto take = [](double& value, double given) {
     if (!std::isnan(given)) value = given;
   };
@@ -136,6 +138,7 @@ JointDrive::Axis JointDrive::with(Axis axis, const Settings& settings) const {
 }
 
 void JointDrive::set(int axis, const Settings& settings) {
+  // All axes are checked before any is changed.
   std::vector<Axis> changed = axes_;
   bool found = false;
   for (Axis& each : changed) {

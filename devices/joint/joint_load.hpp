@@ -11,7 +11,7 @@ namespace devices {
 /// applies to its second body (or to the only movable body), with the torque about the anchor of the joint.
 class JointLoad final : public sim::Sensor {
  public:
-  static constexpr const char* meaning = "Force and torque that go through a joint, about its anchor.";
+  static constexpr const char* meaning = "Force and torque transmitted by a joint, about its anchor.";
   static constexpr const char* without_effect[] = {"position_m"};
   static constexpr double default_rate_hz = 100;
   static constexpr const char* fixed_keys[] = {"joint"};

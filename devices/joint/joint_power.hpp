@@ -9,7 +9,7 @@
 namespace devices {
 
 /// Power that the motor of an axis draws from the battery, by the model of a DC motor: mechanical power over
-/// efficiency, plus the heat of its winding, which is proportional to the square of the effort, also at standstill
+/// efficiency, plus the heat of its winding, which is proportional to the square of the effort, even at standstill
 /// (Krause et al., Analysis of Electric Machinery and Drive Systems, 3rd ed., 2013: P = effort * velocity + R i^2,
 /// effort ~ i). Braking recovers no energy.
 struct MotorPower {

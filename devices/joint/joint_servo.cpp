@@ -85,6 +85,7 @@ void JointServo::change(const Params& params) {
 }
 
 void JointServo::move_set_point(double step_s) {
+  // After coasting the set point starts where the joint is, or the servo would jerk it back.
   if (follows_) {
     set_point_.position = gear_.position();
     set_point_.velocity = joint_.velocity(params_.axis);

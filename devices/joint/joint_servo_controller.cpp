@@ -11,6 +11,7 @@ namespace devices {
 
 void JointServoController::receive(sim::Time, std::span<const std::byte> payload) {
   using shoal::Finite;
+  // A program for a joint_motor can also drive a servo; the fingerprints tell the two commands apart.
   if (shoal::fingerprint(payload) == shoal::fingerprint_of<shoal::joint_command_t>()) {
     servo_.set_velocity(shoal::decode<shoal::joint_command_t>(payload, Finite::required).velocity);
     return;

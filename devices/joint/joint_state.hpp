@@ -32,7 +32,7 @@ class JointState final : public sim::Sensor {
   JointState(const Params& params, const sim::DeviceContext& context);
   void measure(const sim::SenseContext& context) override;
   void disturb(double dt_s, sim::Random& random) override;
-  /// Returns the errors, which can change; the joints cannot.
+  /// Returns the noises, which can change during a run, unlike the joints.
   auto noises() { return std::tie(position_noise_, velocity_noise_, effort_noise_); }
   void visit_state(sim::StateArchive& archive) override;
 

@@ -48,7 +48,7 @@ void MovingMass::make_safe(sim::SafeState safe) {
 
 sim::Vector3d MovingMass::offset_D(double place) const {
   if (params_.motion == MassMotion::slide) return {place, 0, 0};
-  // By the right-hand rule about x: from -z towards +y.
+  // Right-hand rule about x: from -z towards +y.
   return {0, params_.radius_m * std::sin(place), params_.radius_m * (1 - std::cos(place))};
 }
 

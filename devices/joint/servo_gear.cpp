@@ -132,6 +132,7 @@ void ServoGear::drive(double velocity, double direction) {
 }
 
 void ServoGear::push(double effort, double free_velocity) {
+  // An ideal gear takes the effort without the friction motor, whose constraint row would cost time in each step.
   if (params_.is_ideal()) {
     joint_.set_motor(0, 0, axis_);
     if (effort != 0) joint_.add_effort(effort, axis_);
@@ -143,6 +144,8 @@ void ServoGear::push(double effort, double free_velocity) {
     if (std::abs(effort) <= friction) free_velocity = 0;
     contact_ = contact_at(free_velocity);
     position_ += free_velocity * step_s_;
+    // A motor only pushes against the side of the play that it touches; in between it accelerates nothing, and the
+    // joint is free.
     const bool pushes = (contact_ == Contact::up && effort > 0) || (contact_ == Contact::down && effort < 0);
     if (!pushes) effort = 0;
     if (contact_ == Contact::none) friction = 0;

@@ -11,6 +11,7 @@ void TorqueSpeedLine::read(sim::ParamReader& in) {
       "effort of the motor at standstill, N m or N, which decreases linearly with the velocity; unset: max_effort at "
       "any velocity");
   in.read("no_load_velocity", no_load_velocity, sim::above(0), "velocity without load, at which the effort is 0");
+  // A line needs two points.
   if (in.describing() || stall_effort.has_value() == no_load_velocity.has_value()) return;
   if (stall_effort)
     in.error("stall_effort", "'stall_effort' needs 'no_load_velocity'");

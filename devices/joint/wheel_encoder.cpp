@@ -86,6 +86,8 @@ void WheelEncoder::disturb(double dt_s, sim::Random& random) {
   }
   noise_.apply(std::span<double>(turned_rad), dt_s, random);
   for (std::size_t i = 0; i < wheels_.size(); ++i) {
+    // The error accumulates in the angle, not in the ticks, so that an error below one tick is not rounded away at
+    // every sample.
     believed_rad_[i] += turned_rad[i];
     const std::int64_t passed = ticks_at(believed_rad_[i]) - passed_[i];
     passed_[i] += passed;

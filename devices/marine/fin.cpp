@@ -16,6 +16,7 @@ void FinCoefficients::read(sim::ParamReader& in) {
   for (int i = 0; i < 3; ++i) in.read(keys[i], force[i], sim::between(-1e6, 1e6), meanings[i]);
   for (int i = 0; i < 3; ++i) in.read(keys[i + 3], moment[i], sim::between(-1e6, 1e6), meanings[i + 3]);
   if (frame == sim::AxesFrame::flu) return;
+  // From forward-right-down to forward-left-up: y and z change their signs.
   force = {force.x(), -force.y(), -force.z()};
   moment = {moment.x(), -moment.y(), -moment.z()};
 }
@@ -39,6 +40,7 @@ void Fin::Params::read(sim::ParamReader& in) {
     in.error("'coefficients' is missing: 'model' coefficients needs it");
   if (model != Model::coefficients && coefficients)
     in.error("coefficients", "'coefficients' belongs to 'model' coefficients, and only to it");
+  // All zeros would be a fin without effect, most likely a forgotten table.
   if (coefficients && coefficients->force.isZero(0) && coefficients->moment.isZero(0))
     in.error("coefficients", "'coefficients' must have a force or a moment that is not 0");
 }
@@ -99,8 +101,8 @@ void Fin::lift_locally(const WaterFlow& flow, double angle_rad, double scale, do
 
 void Fin::lift_by_speed_of_body(const WaterFlow& flow, double angle_rad, double scale, double step_s) {
   const sim::Vector3d v_D = mount_.in_D(flow, flow.body.v_WB_W - flow.water_W);
-  // As published for motion ahead.  Astern the flow comes from behind, and the force is reversed; it changes in
-  // proportion while the flow is more from the side than along.
+  // Coefficients are published for motion ahead.  Astern the flow comes from behind, and the force is reversed; it
+  // changes in proportion while the flow is more from the side than along.
   const double ahead = v_D.x() == 0 ? 0 : std::clamp(v_D.x() / std::abs(v_D.y()), -1.0, 1.0);
   const double square = (v_D.x() * v_D.x() + v_D.y() * v_D.y()) * ahead;
   const double upper = mount_.max_force_N(std::sqrt(std::abs(square)), step_s);

@@ -21,6 +21,7 @@ ThrusterCommand::Bilinear ThrusterCommand::bilinear(bool ahead, double density_k
 }
 
 double ThrusterCommand::thrust_N(double level, double density_kgpm3) const {
+  // The hull takes back a share of the thrust, since the propeller lowers the pressure at the stern.
   if (params_.curve == Thruster::Curve::direct) return (1 - params_.thrust_deduction) * level;
   if (params_.curve == Thruster::Curve::table) {
     const std::vector<double>& table = params_.table;

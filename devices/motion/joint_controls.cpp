@@ -22,8 +22,8 @@ void JointControls::Stick::read(sim::ParamReader& in) {
   in.read("set", set, "sticks of one set move joints at the same time; the shoulder buttons select the set");
   in.read("velocity", velocity, sim::between(-1000, 1000),
           "at full deflection, rad/s or m/s; negative: the other way round; unset: 'velocity' of the controls");
-  in.read("low", low, sim::between(-1e6, 1e6), "least value of the axis, where the device does not tell it");
-  in.read("high", high, sim::between(-1e6, 1e6), "greatest value of the axis, where the device does not tell it");
+  in.read("low", low, sim::between(-1e6, 1e6), "lowest value of the axis, if the device does not report it");
+  in.read("high", high, sim::between(-1e6, 1e6), "highest value of the axis, if the device does not report it");
   if (!in.describing() && !(low < high)) in.error("high", "'high' must be above 'low'");
 }
 

@@ -123,11 +123,13 @@ void JointGroup::receive(sim::Time now, const Frames& frames) {
 
 void JointGroup::apply(std::span<const double> positions, sim::Time now) {
   commanded();
+  // Joints without a value keep their last command, but limits between joints hold for all of them.
   scratch_.assign(commanded_.begin(), commanded_.end());
   for (std::size_t i = 0; i < scratch_.size(); ++i)
     if (!std::isnan(positions[i])) scratch_[i] = positions[i];
   counts_.clipped += limits_.limit(scratch_);
   for (std::size_t i = 0; i < scratch_.size(); ++i) {
+    // A joint without a value is only commanded if a limit moved it, so that others may still command it.
     if (std::isnan(positions[i]) && scratch_[i] == commanded_[i]) continue;
     if (scratch_[i] < servos_.low(i) || scratch_[i] > servos_.high(i)) ++counts_.clipped;
     servos_.command(i, scratch_[i], now);
@@ -205,6 +207,7 @@ void JointGroup::visit_state(sim::StateArchive& archive) {
   if (!archive.restoring()) return;
   const std::size_t size = servos_.size();
   const auto is_whole = [size](const std::vector<double>& values) { return values.empty() || values.size() == size; };
+  // A snapshot may be damaged: sizes are checked before any value is used.
   const std::size_t capacity = static_cast<std::size_t>(params_.frames_per_packet * params_.buffer_packets) * size;
   const bool fits = frames_.size() % size == 0 && frames_.size() <= capacity && is_whole(from_) && is_whole(to_) &&
                     is_whole(commanded_) && set_points_.size() == size && positions_.size() == size &&

@@ -50,6 +50,7 @@ JointLimitTable::JointLimitTable(const std::vector<JointLimitRow>& rows,
       desired.while_from = row.when->from_rad;
       desired.while_to = row.when->to_rad;
     }
+    // Rows of the same joints and condition form one table, a step function of the position of `by`.
     const auto same = [&](const Table& one) {
       return one.joint == desired.joint && one.by == desired.by && one.while_joint == desired.while_joint &&
              one.while_from == desired.while_from && one.while_to == desired.while_to;
@@ -91,6 +92,7 @@ int JointLimitTable::limit(std::span<double> positions) const {
   constexpr double rounding_rad = 1e-9;
   int beyond = 0;
   for (std::size_t joint = 0; joint < positions.size() && !tables_.empty(); ++joint) {
+    // Limited joints already count at their new positions, in the order of the servos.
     const Range range = range_of(joint, positions);
     double& position = positions[joint];
     if ((range.low && position < *range.low - rounding_rad) || (range.high && position > *range.high + rounding_rad))

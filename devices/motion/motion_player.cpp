@@ -97,6 +97,8 @@ std::vector<MotionPlayer::Tracks> MotionPlayer::tracks_of(const Params& params) 
     Tracks& tracks = motions.emplace_back();
     tracks.name = motion.name;
     tracks.frame_s = motion.frame_s;
+    // Set points go out at whole frames, so the motion lasts a whole number of them; the rounding constant keeps one
+    // that ends at a frame from getting one more.
     tracks.duration_s = std::ceil(motion.end_s() / motion.frame_s - frame_rounding) * motion.frame_s;
     tracks.loop = motion.loop;
     tracks.start = motion.start;
@@ -143,6 +145,7 @@ void MotionPlayer::set_light(LightTrack& light) const {
 void MotionPlayer::play_sounds(double from_s, double to_s, bool with_end, sim::Time now) {
   for (SoundTime& time : motions_[number_].sounds) {
     const double at_s = time.sound.at_s;
+    // Half-open intervals, so that a sound at the border of two steps is played once.
     if (at_s < from_s || at_s > to_s || (at_s == to_s && !with_end)) continue;
     if (time.speaker == nullptr)
       time.speaker = first_device<Speaker>(vehicle_, [&](const Speaker& speaker) {
@@ -282,6 +285,7 @@ void MotionPlayer::values_at(const Tracks& motion, double at_s, std::vector<doub
 void MotionPlayer::begin() {
   is_starting_ = false;
   approached_s_ = approach_s_ = 0;
+  // Others may have commanded the joints; the approach begins where they are.
   group_->take_up();
   if (skips_approach_) return;
   const std::span<const double> present = group_->commanded();
@@ -290,6 +294,8 @@ void MotionPlayer::begin() {
   double furthest = 0;
   for (std::size_t i = 0; i < first_.size(); ++i)
     if (!std::isnan(first_[i])) furthest = std::max(furthest, std::abs(first_[i] - approach_from_[i]));
+  // The soft start and end of the approach make its fastest moment faster than its mean; the limit holds for the
+  // fastest.
   if (furthest > 0) approach_s_ = std::max(tracks().start.min_s, soft_peak * furthest / tracks().start.max_velocity);
 }
 
@@ -367,6 +373,7 @@ void MotionPlayerController::receive(sim::Time, std::span<const std::byte> paylo
   const auto message = shoal::decode<shoal::motion_command_t>(payload, shoal::Finite::any);
   for (const double value : {message.from_s, message.to_s, message.rate})
     if (std::isinf(value)) throw std::runtime_error("'from_s', 'to_s' and 'rate' must be finite, or NaN");
+  // NaN stands for a number that the sender leaves to the motion.
   const auto given = [](double value) { return std::isnan(value) ? std::nullopt : std::optional(value); };
   switch (message.command) {
     case 0:

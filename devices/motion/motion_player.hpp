@@ -14,7 +14,7 @@
 
 namespace devices {
 
-/// What a motion player plays from the start of the run.
+/// Motion that a player plays from the start of the run.
 struct FirstPlay {
   std::string motion;
   std::optional<double> from_s, to_s, rate;
@@ -93,7 +93,7 @@ class MotionPlayer final : public sim::Sensor {
   const std::string& motion_name() const { return name_; }
 
  private:
-  // Their devices are set at first use: devices of the vehicle are built one after the other.
+  // Devices of sounds and lights are set at first use: devices of the vehicle are built one after the other.
   struct LightTrack {
     sim::MotionTrack track;
     Led* led = nullptr;

@@ -59,6 +59,7 @@ ServoBank::ServoBank(const sim::DeviceContext& context, const std::vector<std::s
     if (found == all.end())
       refuse(context, shown + ", which is not a joint_servo of the vehicle" + sim::did_you_mean(name, known) +
                           "; known: " + sim::list_text(known));
+    // One servo twice would get two set points in each frame.
     if (find(found->name)) refuse(context, shown + " twice");
     members_.push_back(*found);
   }

@@ -96,6 +96,7 @@ Dvl::Dvl(const Params& params, const sim::DeviceContext& context)
       velocity_noise_(context, params, 3),
       water_velocity_noise_(context, params, 3),
       range_noise_(context, params, dvl_beams) {
+  // Drawn once per run: the scale error of an instrument does not change while it runs.
   sim::Random scale(context.world.seed(), context.full_name() + "#scale");
   scale.begin_step(0);
   scale_draw_ = scale.gaussian();

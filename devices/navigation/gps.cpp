@@ -68,9 +68,11 @@ void Gps::measure(const sim::SenseContext& context) {
   const bool denied = context.world.zones().denied(sim::ZoneFlag::gps_denied, reading_.p_W);
   const bool submerged = context.world.medium().in_water(reading_.p_W);
   no_fix_ = submerged ? "fix under water" : denied ? "fix in a zone that denies it" : "fix";
+  // The receiver starts to search again each time that the antenna is covered.
   if (denied || submerged) denied_at_ = context.now;
   if (denied_at_ && context.now <= *denied_at_ + sim::from_seconds(params_.reacquisition_s)) reading_.fix_quality = 0;
   reading_.position = geodesy_.to_geodetic(reading_.p_W);
+  // The course is from true north of its own meridian, which turns against y of the world.
   find_course(true_course_rad_);
   true_course_rad_ = reading_.course_rad;
 }

@@ -50,7 +50,7 @@ Odometry::Odometry(const Params& params, const sim::DeviceContext& context)
   wheel_radius_m_ = radius.value_m();
   track_m_ = track.value_m();
   if (!(track_m_ > 0)) refuse(context, "'track_m' is needed: its wheels are in one place");
-  // Assumed lengths may differ, as with worn tyres.  The effective track of a skid-steered rover is wider.
+  // Assumed lengths may differ, as with worn tires.  The effective track of a skid-steered rover is wider.
   const AllowedRatio miscalibrated{0.9, 1.1};
   const bool scrubs = std::any_of(vehicle.devices.begin(), vehicle.devices.end(),
                                   [](const sim::DeviceConfig& device) { return device.type == "skid_steer"; });
@@ -63,6 +63,7 @@ Odometry::Odometry(const Params& params, const sim::DeviceContext& context)
 void Odometry::measure(const sim::SenseContext& context) {
   const sim::Pose X_0V = X_W0_.inverse() * context.vehicle.X_WV();
   const double yaw = sim::yaw_of(X_0V.linear());
+  // The angle counts full turns, as a sum of wheel ticks does.
   truth_theta_rad_ += sim::wrap_angle(yaw - truth_theta_rad_);
   const sim::Matrix3d R_VW = context.vehicle.X_WV().linear().transpose();
   reading_.x_m = X_0V.translation().x();

@@ -11,10 +11,10 @@
 namespace devices {
 
 void WaterSpeed::Params::read(sim::ParamReader& in) {
-  in.read_choice(
-      "senses", senses, {{"both", Senses::both}, {"forward", Senses::forward}, {"magnitude", Senses::magnitude}},
-      "both: the speed with its sign; forward: 0 when the water comes from behind, as a pitot tube; magnitude: "
-      "without its sign, as a paddle wheel");
+  in.read_choice("senses", senses,
+                 {{"both", Senses::both}, {"forward", Senses::forward}, {"magnitude", Senses::magnitude}},
+                 "both: the speed with its sign; forward: 0 when the water comes from behind, like a pitot tube; "
+                 "magnitude: without its sign, like a paddle wheel");
   in.read("threshold_mps", threshold_mps, sim::at_least(0), "below this speed it reports 0, as a paddle wheel sticks");
   in.read("speed_max_mps", speed_max_mps, sim::above(0), "maximum speed that it reports");
   in.read("speed_noise", speed_noise, "error of the speed, m/s");
@@ -40,6 +40,7 @@ void WaterSpeed::measure(const sim::SenseContext& context) {
       speed_mps_ = std::abs(speed_mps_);
       break;
   }
+  // The threshold is applied after the kind of sensor: a paddle wheel sticks in slow flow from either side.
   if (std::abs(speed_mps_) < params_.threshold_mps) speed_mps_ = 0;
   speed_mps_ = std::clamp(speed_mps_, -params_.speed_max_mps, params_.speed_max_mps);
 }

@@ -14,7 +14,7 @@ class WaterSpeed final : public sim::Sensor {
   /// Sign of the measured speed.
   enum class Senses {
     both,
-    forward,    ///< 0 for flow from behind, as a pitot tube
+    forward,    ///< 0 for flow from behind, like a pitot tube
     magnitude,  ///< absolute value, as a paddle wheel
   };
   struct Params {

@@ -18,6 +18,7 @@ void Battery::Params::read(sim::ParamReader& in) {
           "voltages without a load, from empty to full at even shares of the charge; straight lines between");
   if (!in.describing() && open_circuit_V.empty()) {
     in.error("open_circuit_V", "'open_circuit_V' must have at least one voltage");
+    // Reading continues after the error, and a curve needs a point.
     open_circuit_V = {12};
   }
   in.read("internal_resistance_ohm", internal_resistance_ohm, sim::at_least(0), "voltage drop per A");

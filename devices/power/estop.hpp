@@ -11,7 +11,7 @@ namespace devices {
 class Bumper;
 
 /// Emergency stop of a vehicle: while it is engaged, all actuators are in their safe states and accept no commands.
-/// After release they remain there until their next command.
+/// After the release the actuators remain there until their next command.
 class EmergencyStop final : public sim::Sensor {
  public:
   static constexpr const char* meaning = "Emergency stop: engaged, all actuators of the vehicle go to safe states.";

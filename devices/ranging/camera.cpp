@@ -186,6 +186,7 @@ Camera::Camera(const Params& params, const sim::DeviceContext& context)
       baseline_m_(baseline_of(params, context)),
       noise_(context, params, params.image == Kind::rgb ? 3 : 1) {
   change(params);
+  // Before its first image the camera has a black one of the right size.
   renderer_->clear(frame_);
   levels_ = sim::develop(params_.image == Kind::grey ? sim::grey_of(frame_.light) : frame_.light, 1);
   depth_m_ = frame_.depth_m;
@@ -215,7 +216,7 @@ void Camera::change(const Params& params) {
   if (zoomed_fov_rad_ > 0) {
     next.optics.fov_rad = zoomed_fov_rad_;
     if (params.optics.fov_rad != given_fov_rad_ || next.optics.text() != params_.optics.text())
-      throw std::runtime_error("its lens is that of a camera that zooms, and cannot be set");
+      throw std::runtime_error("its lens belongs to a zooming camera, and cannot be set");
   }
   given_fov_rad_ = params.optics.fov_rad;
   params_ = std::move(next);
@@ -328,6 +329,7 @@ void Camera::add_sensor_noise(sim::Random& random) {
 
 void Camera::disturb(double dt_s, sim::Random& random) {
   if (takes_light(params_.image)) {
+    // Shot noise depends on the light of a pixel; the other noise is added to it as read out.
     if (params_.full_well_electrons > 0) add_sensor_noise(random);
     values_.assign(levels_.data.begin(), levels_.data.end());
     noise_.apply(std::span<double>(values_), dt_s, random);
@@ -337,6 +339,7 @@ void Camera::disturb(double dt_s, sim::Random& random) {
     values_.assign(depth_m_.data.begin(), depth_m_.data.end());
     if (params_.depth_noise_per_m > 0)
       for (double& depth : values_)
+        // The depth of a stereo pair is f b / d, so an error of the disparity d grows with the square of the depth.
         if (std::isfinite(depth)) depth += params_.depth_noise_per_m * depth * depth * random.gaussian();
     noise_.apply(std::span<double>(values_), dt_s, random);
     for (std::size_t i = 0; i < values_.size(); ++i)

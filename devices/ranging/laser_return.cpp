@@ -41,9 +41,9 @@ void LaserParams::read(sim::ParamReader& in) {
                   "every surface is");
   in.read_deg("beam_divergence_deg", beam_divergence_rad, sim::between(0, 30), "full divergence angle of a beam");
   in.read("beam_samples", beam_samples, sim::between(1, 100), "rays that sample a beam; 1: its axis only");
-  in.read(
-      "merge_m", merge_m, sim::at_least(0),
-      "echoes of one beam nearer together than this (half a pulse's length) are one, at their mean weighted by power");
+  in.read("merge_m", merge_m, sim::at_least(0),
+          "echoes of one beam closer together than this (half a pulse length) merge into one, at their mean weighted "
+          "by power");
   in.read_choice("returns", returns, {{"strongest", Returns::strongest}, {"first", Returns::first}},
                  "which of several echoes of a beam is reported");
   // Filter, weather and noise.

@@ -45,7 +45,7 @@ struct LaserParams {
 
 /// Returns of a scan, one per beam.
 struct LaserReturns {
-  /// Kinds of `returned`.  Without an echo the range is a limit: the largest, or the least if something is nearer.
+  /// Kinds of `returned`.  Without an echo the range is a limit: the largest, or the smallest if something is nearer.
   static constexpr std::uint8_t none = 0, echo = 1, too_near = 2;
 
   std::vector<double> ranges_m;

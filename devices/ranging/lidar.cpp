@@ -90,6 +90,7 @@ void Lidar::measure_axes(const sim::SenseContext& context) {
   fan_.X_WS = context.X_WS;
   const std::span<sim::RayHit> hits = this->hits();
   context.world.scene().cast_fan(fan_, receiver_.filter(), hits);
+  // Without intensities and losses the ranges are all that a scan needs, and the receiver is left out.
   if (ranges_suffice()) {
     for (std::size_t i = 0; i < hits.size(); ++i) {
       const double range_m = hits[i].range_m;

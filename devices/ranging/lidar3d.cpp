@@ -193,6 +193,7 @@ void fill(const Lidar3d& lidar, shoal::point_cloud_t& message) {
   message.intensities.clear();
   message.rings.clear();
   message.time_offsets_us.clear();
+  // Beams are numbered by columns, as the head turns, so that the points of a cloud are in the order of their times.
   std::size_t beam = 0;
   for (int column = 0; column < lidar.columns(); ++column)
     for (int ring = 0; ring < lidar.rings(); ++ring, ++beam) {

@@ -27,7 +27,7 @@ std::array<float, 3> linear(const std::string& text) {
   return {sim::linear_from_srgb(color[0]), sim::linear_from_srgb(color[1]), sim::linear_from_srgb(color[2])};
 }
 
-/// Sets what a part looks like.  The look is no part of the physics, whose parts are otherwise constant.
+/// Sets what a part looks like.  The look is not part of the physics, whose parts are otherwise constant.
 void paint(sim::PhysicsWorld& physics, int part, std::optional<sim::Color> color) {
   const_cast<sim::PartInfo&>(physics.parts()[static_cast<std::size_t>(part)]).color = color;
 }
@@ -81,6 +81,7 @@ void Led::show() {
   for (std::size_t i = 0; has_power_ && i < sources_.size(); ++i)
     for (const std::size_t shown : sources_[i].shown)
       for (std::size_t channel = 0; channel < 3; ++channel)
+        // Light adds up linearly; sRGB values do not.
         light[shown][channel] += static_cast<float>(intensities_[i]) * sources_[i].color[channel];
   for (std::size_t i = 0; i < shown_.size(); ++i) {
     for (std::size_t channel = 0; channel < 3; ++channel)

@@ -64,7 +64,7 @@ class Speaker final : public sim::Sensor, public sim::UnhashedUntilUsed {
 
   const std::optional<Playing>& playing() const { return playing_; }
   const SoundParams& sound(const Playing& playing) const { return sounds_[static_cast<std::size_t>(playing.number)]; }
-  /// Returns its level at 1 m, dB re 20 uPa.
+  /// Returns the sound level at 1 m, dB re 20 uPa.
   double level_dB(const Playing& playing) const;
   sim::Vector3d position_W() const;
   /// Returns how long the sound still lasts at the last sample.

@@ -68,6 +68,7 @@ double TransponderNetwork::free_answer_Hz(const std::string& network, double ban
     });
   };
   double answer_Hz = lowest_answer_Hz;
+  // Answers must not overlap in frequency, or the interrogator could not tell them apart.
   while (taken(answer_Hz)) answer_Hz += std::max(min_apart_Hz, bandwidth_Hz);
   return answer_Hz;
 }

@@ -37,6 +37,7 @@ double AssumedWater::first_arrival_s(double own_depth_m, double depth_m, double 
               .water_m = std::numeric_limits<double>::infinity(),
               .max_bounces = 1},
              rays);
+  // In a shadow of the assumed water no ray arrives; a straight line at the mean speed is the best guess.
   if (!rays.empty()) return rays.front().travel_time_s;
   const double mean_mps = (profile().speed_mps(own_depth_m) + profile().speed_mps(depth_m)) / 2;
   return std::hypot(across_m, depth_m - own_depth_m) / mean_mps;

@@ -71,8 +71,11 @@ void Interrogator::ping(sim::Time at) {
 void Interrogator::receive(const sim::Reception& received) {
   if (!received.understood() || received.signal.code != context_.full_name()) return;
   const auto answer = decode_answer(received.signal.payload);
+  // A late answer to an earlier ping would give a wrong range.
   if (!answer || answer->ping != number_) return;
+  // The answer begins after the ping has ended, however short the turnaround.
   const double turnaround_s = std::max(answer->turnaround_s, params_.ping_s);
+  // Where the transponder was when it answered, from where the ship is when it receives it: both move meanwhile.
   const sim::Vector3d p_ST_W = received.p_sent_W - received.p_started_W;
   const double distance_m = (answer->out_m + p_ST_W.norm()) / 2;
   std::erase(waiting_for_, received.source);

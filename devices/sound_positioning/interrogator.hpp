@@ -39,7 +39,7 @@ class Interrogator final : public sim::AcousticListener {
     double frequency_Hz = 0, time_bandwidth = 1;       ///< of the answer
     void visit_state(sim::StateArchive& archive) {
       archive(transponder, started, two_way_s, distance_m, p_ST_S);
-      // Of the same places and signal.
+      // Not hashed, since they follow from the same places and signal.
       archive.unhashed(apparent_S, snr, frequency_Hz, time_bandwidth);
     }
   };

@@ -23,7 +23,7 @@ void Lbl::Params::read(sim::ParamReader& in) {
   in.read("assumed_sound_speed_mps", assumed_sound_speed_mps, sim::between(100, 10000),
           "speed of sound that converts times to ranges; unset: the true one at the sensor");
   in.read("assumed_water", assumed_water,
-          "water of which the user knows: ranges are those of first arrivals through it; unset: straight lines");
+          "water that the user assumes: ranges are those of first arrivals through it; unset: straight lines");
   in.read("answer_dropout", answer_dropout, sim::between(0, 1),
           "probability that an answer is missed, drawn for each answer");
   in.read("time_noise", time_noise, "error of each two-way travel time, s");
@@ -79,6 +79,7 @@ void Lbl::disturb(double dt_s, sim::Random& random) {
       range.travel_time_s = range.range_m = no_answer;
       continue;
     }
+    // Time passes once for all answers of a ping: slow errors advance at the first, and stay for the others.
     time_noise_.apply(range.travel_time_s, since_ping_s_, random);
     since_ping_s_ = 0;
     range.travel_time_s = std::max(range.travel_time_s, 0.0);

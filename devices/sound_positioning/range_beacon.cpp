@@ -133,6 +133,7 @@ void RangeBeacon::discard(const std::string& beacon) {
 
 void RangeBeacon::disturb(double, sim::Random& random) {
   for (Sighting& sighting : sightings_) {
+    // Slow errors belong to a pair of devices and advance by the time since they last measured each other.
     Errors& errors = errors_of(sighting.beacon);
     const double dt_s = now_s_ - errors.seen_at_s;
     errors.seen_at_s = now_s_;
@@ -153,6 +154,7 @@ void RangeBeacon::visit_state(sim::StateArchive& archive) {
   archive(beacons);
   if (archive.restoring()) {
     errors_.clear();
+    // The errors are made first, in the saved order, and then filled.
     for (const std::string& beacon : beacons) errors_of(beacon);
     if (errors_.size() != beacons.size()) archive.fail("errors to one beacon are there twice");
   }

@@ -47,8 +47,10 @@ bool Transponder::listens_to(const sim::Signal& signal) const {
 }
 
 void Transponder::receive(const sim::Reception& received) {
+  // It does not answer its own vehicle, whose interrogator it would drown.
   if (!received.understood() || received.source.starts_with(vehicle().name() + "/")) return;
   const sim::Time at = std::max(received.started + sim::from_seconds(params_.turnaround_s), received.ended);
+  // One answer at a time: pings that arrive meanwhile are lost, as with real transponders.
   if (at < transducer_.busy_until()) return;
   ++answers_;
   asked_by_ = received.source;

@@ -17,7 +17,7 @@ void Usbl::Params::read(sim::ParamReader& in) {
   in.read("assumed_sound_speed_mps", assumed_sound_speed_mps, sim::between(100, 10000),
           "speed of sound that converts times to ranges; unset: the true one at the sensor");
   in.read("assumed_water", assumed_water,
-          "water of which the user knows: rays through it give positions; unset: straight lines");
+          "water that the user assumes: rays through it give positions; unset: straight lines");
   in.read("answer_dropout", answer_dropout, sim::between(0, 1),
           "probability that an answer is missed, drawn for each answer");
   in.read("range_noise", range_noise, "error of each range, m");
@@ -86,9 +86,11 @@ void Usbl::measure(const sim::SenseContext& context) {
                       elevation_rad(answer.p_ST_S), azimuth_rad(answer.apparent_S), elevation_rad(answer.apparent_S),
                       params_.array ? params_.array->cosine_std(tone) : 0});
   }
+  // The device converts times by the sound speed that it assumes, by default the true one at its transducer.
   assumed_mps_ = params_.assumed_sound_speed_mps.value_or(medium.sound_speed_mps(p_WS));
   R_WS_ = context.X_WS.linear();
   depth_m_ = medium.depth_m(p_WS);
+  // The next ping waits for all answers: those of two pings could not be distinguished.
   if (context.now < next_ping_ || !interrogator_.done(context.now) || !medium.in_water(p_WS)) return;
   next_ping_ = context.now + sim::from_seconds(params_.ping_period_s);
   interrogator_.ping(context.now);
@@ -98,6 +100,7 @@ void Usbl::disturb(double dt_s, sim::Random& random) {
   since_fix_s_ += dt_s;
   for (Fix& fix : fixes_) {
     fix.range_m = fix.travel_time_s / 2 * assumed_mps_;
+    // Time passes once for all answers of a ping: slow errors advance at the first, and stay for the others.
     range_noise_.apply(fix.range_m, since_fix_s_, random);
     disturb_direction(fix, random);
     fix.range_m = std::max(fix.range_m, 0.0);

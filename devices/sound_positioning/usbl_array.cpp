@@ -10,7 +10,7 @@ namespace devices {
 void UsblArrayParams::read(sim::ParamReader& in) {
   in.read("baseline_m", baseline_m, sim::between(0.001, 10), "between the two hydrophones of a pair");
   in.read_deg("phase_std_deg", phase_std_rad, sim::between(0, 180),
-              "error of each difference of phase at any level, standard deviation");
+              "standard deviation of each phase difference at any level");
 }
 
 double UsblArrayParams::cosine_std(const UsblTone& tone) const {

@@ -93,7 +93,7 @@ class Balance {
   double tilt_rad_ = 0, x_m_ = 0, v_mps_ = 0;
 };
 
-/// What the robot has seen.
+/// Latest observations of the robot.
 struct Seen {
   std::optional<double> tilt_rad;
   int images = 0, width = 0, height = 0;

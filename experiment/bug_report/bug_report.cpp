@@ -131,6 +131,7 @@ class BugPacker {
     for (const auto& [name, what] : texts) {
       const std::string path = directory_ + "/" + name;
       std::error_code error;
+      // A link or a pipe could lead anywhere, and the archive is sent to others.
       if (!fs::exists(fs::symlink_status(path, error)))
         left_out(std::string(name) + ": the run did not write it");
       else if (!is_plain(path))
@@ -155,6 +156,7 @@ class BugPacker {
       }
       const std::uintmax_t size = size_of(log);
       std::ifstream in(log, std::ios::binary);
+      // The end of an output tells why a program failed.
       if (size > max_log_bytes) in.seekg(static_cast<std::streamoff>(size - max_log_bytes));
       const std::string text{std::istreambuf_iterator<char>(in), {}};
       if (size > max_log_bytes) left_out(fmt::format("{}: truncated to its last {}", name, size_text(max_log_bytes)));
@@ -212,11 +214,12 @@ class BugPacker {
     tail.max_bytes = static_cast<std::uint64_t>(options_.max_MB) << 20;
     tail.snapshots = directory_ + "/snapshots";
     tail_ = write_record_tail(record, tail_file, tail);
+    // A record of another run would mislead whoever reads the report.
     if (run_ && (tail_->info.world != run_->world || tail_->info.seed != run_->seed))
       throw std::runtime_error(
           fmt::format("{}: is of world '{}' with seed {}, but the run in {} is of '{}' with seed {}", record,
                       tail_->info.world, tail_->info.seed, directory_, run_->world, run_->seed));
-    if (!tail_->whole) left_out(fmt::format("{}: what is before {:.3f} s of simulated time", record, tail_->start_s));
+    if (!tail_->whole) left_out(fmt::format("{}: the part before {:.3f} s of simulated time", record, tail_->start_s));
     if (!tail_->short_of.empty()) left_out(tail_->short_of);
   }
 
@@ -237,12 +240,11 @@ class BugPacker {
     std::string text = "\nHow to look at it:\n";
     if (run_)
       text += fmt::format(
-          "  shoal run world.yaml --seed {} --duration {:g}    the run again; with --launch if its "
-          "programs took part\n",
+          "  shoal run world.yaml --seed {} --duration {:g}    reruns it; add --launch if its programs took part\n",
           run_->seed, run_->sim_time_s);
     if (!tail_) return text;
     text += tail_->replayable()
-                ? "  shoal replay record_tail.lcm    its end again, by the same build of shoal\n"
+                ? "  shoal replay record_tail.lcm    replays its end with the same build of shoal\n"
                 : "  record_tail.lcm has no snapshot at its start: it can be inspected, but not replayed.\n";
     return text +
            "  shoal log info record_tail.lcm    its channels\n"

@@ -94,6 +94,7 @@ void Manifest::read_head(std::string_view line) {
   if (const std::int64_t version = in.whole("shoal_manifest"); version != format)
     throw std::runtime_error(fmt::format("{}: 'shoal_manifest' must be {}, got {}", where, format, version));
   study_ = in.text("study");
+  // The runs may be executed from other folders, by jobs of a cluster.
   if (!fs::path(study_).is_absolute())
     throw std::runtime_error(where + ": 'study' must be an absolute path, got '" +
                              sim::shortened(sim::printable(study_)) + "'");
@@ -186,6 +187,7 @@ PlannedStudy load_planned(const Manifest& manifest, const sim::LoadOptions& load
   try {
     planned.study = load_study(manifest.study(), changes);
   } catch (const std::invalid_argument& error) {
+    // Only algorithms of the manifest can be wrong here, so its line is named.
     if (!algorithms.empty()) throw;
     throw std::runtime_error(manifest_path(manifest.directory()) + ":1: 'algorithms': " + error.what());
   }
@@ -202,6 +204,8 @@ void check_planned(const Manifest& manifest, const PlannedStudy& planned, const 
   for (const std::size_t i : which) {
     const StudyRun& run = planned.runs[i];
     const ManifestRun line = manifest.run(run.index);
+    // The inputs are hashes of the world and its settings: a result under the number of a changed run would be wrong
+    // without a sign of it.
     const bool same = line.in_case == config.cases[run.in_case].name && line.seed == run.seed &&
                       line.point == (config.factors.empty() ? 0 : run.point + 1) &&
                       line.inputs == inputs_of(planned.study, run);

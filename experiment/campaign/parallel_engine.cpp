@@ -39,6 +39,7 @@ std::vector<std::vector<std::size_t>> chunks_of(const std::vector<std::size_t>& 
 }
 
 std::vector<std::string> chunk_command(const EngineOptions& options) {
+  // The command runs on other machines and in other folders, so all paths are absolute.
   std::vector<std::string> command{own_program(), "study", "run", fs::absolute(options.study.output).string(),
                                    "--quiet"};
   if (options.study.run_timeout_s > 0) {
@@ -95,7 +96,7 @@ void run_by_parallel(const LoadedStudy& study, const EngineOptions& options, std
                                "' must not have a '{' with the engine parallel, which GNU parallel would replace");
     command += shell_word(word) + " ";
   }
-  // What the processors of another machine have to do is not known.
+  // The load of another machine is unknown.
   const int threads = options.ssh_login_file.empty() ? options.study.threads : 1;
   arguments.push_back(command + fmt::format("--jobs 1 --threads {} --index {{}}", threads));
   arguments.emplace_back("::::");

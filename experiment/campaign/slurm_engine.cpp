@@ -102,6 +102,7 @@ class SlurmSubmission {
         "#!/bin/sh\n# A task of `shoal study run --engine slurm`: the runs in one line of the list.\nexec " + command +
             fmt::format("--jobs {} --threads 1 --index \"$(sed -n \"${{SLURM_ARRAY_TASK_ID}}p\" {})\"\n",
                         options_.study.jobs, shell_word(begin + ".txt")));
+    // A task that lost its node starts again (--requeue) and continues its log; runs that have a result are skipped.
     std::vector<std::string> arguments{"sbatch",
                                        "--parsable",
                                        "--job-name=" + name_,

@@ -134,6 +134,7 @@ void insert_runs(NewDatabase& database, const StudyResults& results) {
   for (const StudyRun& run : results.runs()) {
     const std::size_t point = config.factors.empty() ? 0 : run.point + 1;
     const std::string inputs = inputs_of(results.study(), run);
+    // Runs without a result get a row, too, so that a query can find what is missing.
     if (!run.record) {
       const std::optional<std::string> no_text;
       const std::optional<std::int64_t> no_number;

@@ -92,6 +92,7 @@ std::vector<StudyRow> parse_study_rows(const std::string& text, const std::strin
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     std::string_view of_line(text.data() + begin, end - begin);
+    // Spreadsheets end lines with CR LF.
     if (of_line.ends_with('\r')) of_line.remove_suffix(1);
     begin = end + 1;
     ++line;

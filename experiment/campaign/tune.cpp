@@ -43,6 +43,7 @@ TunedPoint Tuning::point_of(int generation, std::size_t point, const std::vector
   }
   if (tuned.failed > 0) tuned.judgement = Judgement::failed;
   if (passed == tuned.runs) tuned.judgement = Judgement::passed;
+  // A statistic over some of the seeds would compare points by different runs.
   const bool all = std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
   tuned.value = all ? statistics_of(values).by_word(options_.statistic) : no_figure;
   return tuned;
@@ -73,7 +74,7 @@ void Tuning::run(const std::function<void(int generation)>& after) {
     std::iota(all.begin(), all.end(), std::size_t{0});
     run_study(study_, options_.study, runs, all, progress);
     if (caught_signal() != 0) return;
-    // Their values.
+    // Values of these points.
     std::vector<TunedPoint> points;
     for (std::size_t point = first; point < study_.points.size(); ++point)
       points.push_back(point_of(generation, point, runs));

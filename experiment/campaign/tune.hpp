@@ -14,10 +14,10 @@ struct TuneOptions {
   StudyOptions study;
   std::string figure;              ///< of the runs
   std::string statistic = "mean";  ///< of the figure over the cases and seeds of a point: one of statistic_words()
-  bool maximize = false;           ///< the greatest value is best; otherwise the smallest
+  bool maximize = false;           ///< the largest value is best; otherwise the smallest
   int generations = 20;
   int population = 0;     ///< points of a generation; 0: 4 + 3 ln n
-  double sigma = 0.3;     ///< first standard deviation, as a share of each range
+  double sigma = 0.3;     ///< initial standard deviation, as a fraction of each range
   std::int64_t seed = 1;  ///< of the search
 };
 
@@ -60,7 +60,7 @@ class Tuning {
   std::vector<TunedPoint> tried_;
 };
 
-/// Returns values for a search that looks for the greatest: all finite, those of points where more runs break the rules
+/// Returns values for a search that maximizes: all finite, those of points where more runs break the rules
 /// of their world below those with fewer, and those of points without a value below all others.
 std::vector<double> ranked_values(const std::vector<TunedPoint>& points, bool maximize);
 

@@ -37,8 +37,8 @@ const StudyRow* row_of(const LoadedStudy& study, const StudyRun& run, const std:
 std::string other_kind(const StudyRun& run, const StudyRow& row) {
   const RunKind own = kind_of(*run.record);
   if (row.shoal == own.version && row.processor == own.processor && row.c_library == own.c_library) return {};
-  return fmt::format("  that of the table is of shoal {}, {}, {}; this one of shoal {}, {}, {}\n", row.shoal,
-                     row.processor, row.c_library, own.version, own.processor, own.c_library);
+  return fmt::format("  the table has shoal {}, {}, {}; this is shoal {}, {}, {}\n", row.shoal, row.processor,
+                     row.c_library, own.version, own.processor, own.c_library);
 }
 
 std::string outcome_of(const StudyRun& run, const StudyRow* row, bool& equal) {
@@ -53,6 +53,7 @@ std::string outcome_of(const StudyRun& run, const StudyRow* row, bool& equal) {
   for (std::size_t i = 0; i < std::min(max_shown, verified.differences.size()); ++i)
     text += "  " + verified.differences[i] + "\n";
   if (verified.differences.size() > max_shown) text += "  ...\n";
+  // Last bits may differ between builds and machines, which is then said.
   return text + other_kind(run, *row);
 }
 
@@ -78,6 +79,7 @@ Verified compare_with_row(const StudyRun& run, const StudyRow& row) {
     return found == figures.end() ? std::optional<double>() : found->second;
   };
   for (const std::string& name : names) {
+    // CPU times differ from run to run.
     if (name.ends_with(std::string(".") + time_of_event)) continue;
     ++verified.figures;
     const auto there = value_in(row.figures, name), here = value_in(run.record->metrics, name);
@@ -142,7 +144,7 @@ VerifiedTable compare_with_table(const LoadedStudy& study, const std::vector<Stu
     if (fields.size() != columns.size())
       throw std::runtime_error(
           fmt::format("{}:{}: must have {} fields, got {}", name, line, columns.size(), fields.size()));
-    // With factors the name of a world is followed by the values of its point.
+    // In a study with factors the name of a world is followed by the values of its point.
     if (!cases.empty() && std::none_of(cases.begin(), cases.end(), [&world = fields[0]](const std::string& each) {
           return world == each || world.starts_with(each + " (");
         }))

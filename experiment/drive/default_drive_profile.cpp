@@ -6,7 +6,7 @@ namespace experiment {
 std::string_view default_drive_profile() {
   return R"(# Profile of `shoal drive` and of the live page; docs/guides/drive.md.
 rate_hz: 20   # commands per second
-hold_s: 0.2   # stops so long after the last sign of the driver
+hold_s: 0.2   # stops this long after the last input of the driver
 keys:
   hold: space
   centre: x

@@ -184,6 +184,7 @@ void DriveMapping::find_thrust(const DrivenVehicle& vehicle) {
     } else if (takes(device, "thrust_rudder_command_t")) {
       targets_.push_back({Form::thrust_rudder, device.channel});
     }
+  // A drive that takes thrust and rudder goes first; else the profile knows how to mix thrusters and fins.
   if (!targets_.empty()) return;
   for (const DriveProfile::Craft& craft : profile_.crafts)
     if (add_craft(craft, vehicle)) return;
@@ -252,6 +253,7 @@ sim::Bytes DriveMapping::payload(const Target& target, const DriveValues& values
   switch (target.form) {
     case Form::twist: {
       shoal::twist_command_t command{};
+      // With kind tilt the speed follows from the tilt; the twist only turns.
       command.forward_mps = kind_ == DriveKind::tilt ? 0 : forward * profile_.twist.forward_mps;
       command.turn_radps = turn * (kind_ == DriveKind::tilt ? profile_.tilt.turn_radps : profile_.twist.turn_radps);
       return stamped(command, utime);
@@ -297,6 +299,7 @@ sim::Bytes DriveMapping::payload(const Target& target, const DriveValues& values
     }
     case Form::joint_settings: {
       shoal::joint_settings_t command{};
+      // NaN: as before, for all but the velocity.
       command.axis = -1;
       command.velocity = joint;
       command.max_force = command.low_stop = command.high_stop = nothing;

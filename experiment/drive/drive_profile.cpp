@@ -60,13 +60,13 @@ void DriveProfile::PadAxis::read(sim::ParamReader& in) {
   in.require("axis");
   in.read_choice("axis", axis, drive_axis_words, "axis that it moves");
   in.read("scale", scale, sim::between(-1, 1), "share of full deflection; negative: reversed");
-  in.read("low", low, sim::between(-2147483648.0, 2147483647.0), "lowest value, if the device does not tell it");
-  in.read("high", high, sim::between(-2147483648.0, 2147483647.0), "highest value, if the device does not tell it");
+  in.read("low", low, sim::between(-2147483648.0, 2147483647.0), "lowest value, if the device does not report it");
+  in.read("high", high, sim::between(-2147483648.0, 2147483647.0), "highest value, if the device does not report it");
   if (!in.describing() && !(low < high)) in.error("high", "'high' must be above 'low'");
 }
 
 void DriveProfile::Gamepad::read(sim::ParamReader& in) {
-  in.read("hold", hold, sim::between(0, max_code), "number of the dead-man button (BTN_...)");
+  in.read("hold", hold, sim::between(0, max_code), "code of the dead-man button (BTN_...)");
   in.read("next_joint", next_joint, sim::between(0, max_code), "button that selects the next joint; of kind joints");
   in.read("dead_band", dead_band, sim::between(0, 0.9), "deflection below which an axis is 0");
   in.read_list("axes", axes, "axis", "axes of the gamepad");
@@ -102,7 +102,7 @@ void DriveProfile::Camera::read(sim::ParamReader& in) {
   in.read_deg("pan_degps", pan_radps, sim::between(0, 3600), "speed of the pan at full deflection of turn");
   in.read_deg("tilt_degps", tilt_radps, sim::between(0, 3600), "speed of the tilt at full deflection of forward");
   in.read_deg("zoom_degps", zoom_radps, sim::between(0, 3600),
-              "by which the field of view becomes smaller at full deflection of dive");
+              "rate at which the field of view narrows at full deflection of dive");
 }
 
 void DriveProfile::Joints::read(sim::ParamReader& in) {
@@ -125,7 +125,7 @@ void DriveProfile::Craft::read(sim::ParamReader& in) {
   in.require("name");
   in.read_name("name", name, "name of the row");
   in.require("devices");
-  in.read_list("devices", shares, "device", "devices and their shares; a vehicle that has them all is driven so");
+  in.read_list("devices", shares, "device", "devices and their shares; they drive a vehicle that has them all");
   if (!in.describing() && in.has("devices") && shares.empty()) in.error("devices", "'devices' must name a device");
   check_size(in, "devices", shares.size());
 }
@@ -136,12 +136,12 @@ void DriveProfile::Program::read(sim::ParamReader& in) {
   in.require("devices");
   in.read("devices", devices, "devices that such a vehicle has");
   if (!in.describing() && in.has("devices") && devices.empty()) in.error("devices", "'devices' must name a device");
-  in.read("tilts", tilts, "it takes shoal.inclination_t on the same channel: its tilt, for kind tilt");
+  in.read("tilts", tilts, "it takes shoal.inclination_t, the tilt of kind tilt, on the same channel");
 }
 
 void DriveProfile::read(sim::ParamReader& in) {
   in.read("rate_hz", rate_hz, sim::between(5, 100), "commands per second of wall time");
-  in.read("hold_s", hold_s, sim::between(0.05, 0.2), "the vehicle stops this time after the last sign of the driver");
+  in.read("hold_s", hold_s, sim::between(0.05, 0.2), "the vehicle stops this long after the last input of the driver");
   in.read("keys", keys, "keys of the terminal");
   in.read("gamepad", gamepad, "buttons and axes of a gamepad");
   in.read("twist", twist, "limits of kind twist");

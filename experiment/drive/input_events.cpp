@@ -39,6 +39,7 @@ std::optional<InputEvent> InputEventReader::next() {
                        std::to_string(highest) + ", got " + std::to_string(value));
     return value;
   };
+  // struct input_event of linux/input.h on 64-bit machines, little-endian.
   const std::uint64_t seconds = check("seconds", unsigned_at(bytes, 0, 8), max_time_s);
   const std::uint64_t microseconds = check("microseconds", unsigned_at(bytes, 8, 8), 999'999);
   InputEvent event;

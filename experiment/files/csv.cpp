@@ -16,6 +16,7 @@ std::optional<std::vector<std::string>> csv_fields(std::string_view line) {
   std::vector<std::string> fields(1);
   bool quoted = false;
   for (std::size_t i = 0; i < line.size(); ++i) {
+    // Two quotes in a quoted field stand for one (RFC 4180).
     if (quoted && line[i] == '"') {
       if (i + 1 < line.size() && line[i + 1] == '"')
         fields.back() += line[++i];

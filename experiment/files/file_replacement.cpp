@@ -82,7 +82,7 @@ mode_t usual_rights() {
 
 namespace {
 
-/// Owner and permissions of a file as it is or as a new one would be.  Throws when it is not a regular file.
+/// Owner and permissions of an existing file, or those that a new one would get.  Throws when it is not a regular file.
 struct stat rights_of(const std::string& path, bool& is_there) {
   std::error_code error;
   struct stat status {};
@@ -124,14 +124,17 @@ void check_whole_file(const std::string& path) {
 
 void replace_file(const std::string& path, const std::string& before, const std::string& after) {
   std::error_code error;
+  // A link keeps pointing to its target, which is replaced.
   const std::string target = fs::canonical(path, error).string();
   struct stat status {};
   if (error || stat(target.c_str(), &status) != 0) fail(path, "it does not exist any more");
+  // Replacing one name of a file would leave the other with the old content.
   if (status.st_nlink > 1) fail(path, "it has more than one hard link");
   if (access(target.c_str(), W_OK) != 0) fail(path, std::generic_category().message(errno));
   NewFile file(path, target);
   file.write(after);
   file.take_rights(status);
+  // Compared as late as possible: an editor may have saved the file meanwhile.
   std::ifstream old(target, std::ios::binary);
   const std::string now{std::istreambuf_iterator<char>(old), {}};
   if (!old.is_open() || now != before) fail(path, "it has changed since it was read");

@@ -75,6 +75,7 @@ bool run_gnuplot(const std::string& directory, const std::string& script, std::c
   using Clock = std::chrono::steady_clock;
   const pid_t pid = start(directory, script);
   if (pid == 0) return false;
+  // CPU time is limited, since the machine may be busy with other runs; the wall time only ends a gnuplot that waits.
   const auto deadline = Clock::now() + 20 * cpu_limit;
   while (Clock::now() < deadline && cpu_time(pid) < cpu_limit && !give_up()) {
     int status = 0;
@@ -83,6 +84,7 @@ bool run_gnuplot(const std::string& directory, const std::string& script, std::c
     if (ended < 0 && errno != EINTR) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
+  // The whole group: gnuplot may have started helpers.
   kill(-pid, SIGKILL);
   while (waitpid(pid, nullptr, 0) < 0 && errno == EINTR) {
   }

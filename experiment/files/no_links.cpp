@@ -14,6 +14,7 @@ void refuse_links(const std::string& root, const std::string& path) {
   namespace fs = std::filesystem;
   assert(path.starts_with(root));
   fs::path part = root;
+  // The root is the user's choice and may be a link; only what is below it could be a trap.
   for (const fs::path& name : fs::path(path.substr(root.size())).relative_path()) {
     part /= name;
     std::error_code error;

@@ -25,7 +25,7 @@ void make_folders(const std::string& root, const std::string& folder);
 /// with the reason alone.
 bridges::FileDescriptor make_new_file(const std::string& path);
 
-/// As make_new_file(), for the `part` of a file that gets the name `path` when it is complete.  Throws an Error with
+/// Like make_new_file(), for the `part` of a file that gets the name `path` when it is complete.  Throws an Error with
 /// this name and the reason.
 template <typename Error = std::runtime_error>
 bridges::FileDescriptor make_part_file(const std::string& path, const std::string& part) {

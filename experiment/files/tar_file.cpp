@@ -71,6 +71,7 @@ void TarFile::add(const std::string& name, const std::string& bytes) {
 void TarFile::add_file(const std::string& name, const std::string& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) throw std::runtime_error(path + ": cannot be read: " + std::strerror(errno));
+  // The header of an entry has its size, so what is appended meanwhile is left out.
   std::uint64_t left = std::filesystem::file_size(path);
   start_entry(name, left);
   std::vector<char> block(std::size_t{1} << 20);

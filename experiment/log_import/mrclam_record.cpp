@@ -77,6 +77,7 @@ MrclamData::Pose pose_in(const std::vector<MrclamData::Pose>& truth, double time
 class ImportedRun {
  public:
   ImportedRun(const MrclamData& data, const std::string& log, bool overwrite)
+      // The record is written by the same parts as that of a run, so that every command reads it.
       : data_(data),
         start_s_(start_of_data(data)),
         loaded_(load(mrclam_world(data), log)),
@@ -241,6 +242,7 @@ MrclamData read_mrclam(const std::string& directory) {
     parse_mrclam_measurements(read(stem + "Measurement.dat"), path(stem + "Measurement.dat"), subjects, robot);
     data.robots.push_back(std::move(robot));
   }
+  // The record begins with the last robot, so that all have a true pose from the start.
   const double start_s = start_of_data(data);
   for (std::size_t i = 0; i < data.robots.size(); ++i)
     if (end_of_truth(data.robots[i], start_s) <= 0)
@@ -270,6 +272,7 @@ std::string mrclam_world(const MrclamData& data) {
         "length_m: 0.6}}]}}\n",
         subject_name(data, landmark.subject), landmark.x_m, landmark.y_m);
   yaml += "vehicles:\n";
+  // The robots of the data set are iRobot Create. They are kinematic: the record moves them along their true tracks.
   for (std::size_t i = 0; i < data.robots.size(); ++i) {
     const MrclamData::Pose pose = pose_in(data.robots[i].truth, start_s);
     yaml += fmt::format(

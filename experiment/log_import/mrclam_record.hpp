@@ -19,7 +19,7 @@ MrclamData read_mrclam(const std::string& directory);
 /// `until_s`.
 std::string mrclam_world(const MrclamData& data);
 
-/// What a record holds.
+/// Contents of a record.
 struct MrclamRecord {
   double duration_s = 0;
   std::size_t odometries = 0, measurements = 0;

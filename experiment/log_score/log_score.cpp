@@ -105,6 +105,7 @@ class Exports {
   }
 
   void after_step() {
+    // Truth at a fixed rate, whatever the step: files of long runs stay readable.
     const std::int64_t every =
         std::max<std::int64_t>(1, std::llround(truth_interval_s / sim::to_seconds(world_.step_time())));
     if (world_.step_number() % every != 0) return;
@@ -182,6 +183,7 @@ class LogScoring {
 
   LogScore run() {
     sim::World& world = replayed_.world();
+    // A log that begins with a snapshot has the sums of the metrics until then.
     if (log_.snapshot)
       if (const std::string problem = restore_scores(scoring_, log_.snapshot->scores); !problem.empty())
         notes_.push_back(problem);
@@ -189,6 +191,7 @@ class LogScoring {
     replayed_.start();
     exports_->after_step();
     while (world.step_number() < log_.usable_step() && caught_signal() == 0) {
+      // In the order of a run: devices, then estimates, then scores.
       replayed_.step();
       publish_estimates();
       scoring_.after_step();
@@ -252,6 +255,7 @@ class LogScoring {
     shoal::estimate_t estimate{};
     fill(estimate, estimate.position_m);
     for (int i = 0; i < 9; ++i) estimate.covariance_m2[i] = (*row.covariance_m2)(i / 3, i % 3);
+    // NaN: the file says nothing about the clock.
     estimate.clock_error_s = std::nan("");
     return shoal::encode(estimate);
   }

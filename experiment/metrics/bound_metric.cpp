@@ -38,7 +38,7 @@ class BoundMetric final : public Metric {
  public:
   static constexpr const char* meaning =
       "reference for the rms position error with the measurements of the run: the posterior Cramer-Rao bound, "
-      "horizontal, in which a vehicle without DVL and odometry knows its newest fix alone";
+      "horizontal, in which a vehicle without DVL and odometry only knows its newest fix";
   static std::vector<sim::FigureKind> figures() {
     return {{"rms_m", "m", "root of the mean variance of the position, from `from_s` to the end"},
             {"final_m", "m", "standard deviation of the position at the end"},
@@ -50,7 +50,7 @@ class BoundMetric final : public Metric {
   /// Measurements of the team that count, besides fixes and dead reckoning.
   enum class Scope {
     team,      ///< those of all vehicles
-    received,  ///< the packets that the vehicle received, its sightings, and those by USBL of it
+    received,  ///< the packets that the vehicle received, and the relative positions of and to it
     alone,     ///< none
   };
   struct Params final : sim::MetricParams {
@@ -66,7 +66,7 @@ class BoundMetric final : public Metric {
 
   void after_step() override;
   void add_figures(Figures& figures) const override;
-  std::string why_none(const std::string&) const override { return "no time was counted" + since_from_s(); }
+  std::string why_none(const std::string&) const override { return "no time was scored" + since_from_s(); }
   std::int64_t bad_messages() const override { return bad_messages_; }
   void visit_state(sim::StateArchive& archive, History) override;
 
@@ -80,7 +80,7 @@ class BoundMetric final : public Metric {
   static std::vector<std::string> names_of(const Params& params, const sim::WorldConfig& world);
   static std::vector<VehicleErrors> errors_of_team(const std::vector<std::string>& names, const sim::World& world);
   TeamBound make_bound(const Params& params) const;
-  /// Returns whether ranges and sightings of a vehicle count.
+  /// Returns whether ranges and relative positions measured by a vehicle count.
   bool counts(int observer) const {
     return params_.of == Scope::team || (params_.of == Scope::received && observer == scored_);
   }
@@ -107,15 +107,15 @@ void BoundMetric::Params::read(sim::ParamReader& in) {
   in.require("vehicle");
   read_vehicle(in);
   in.read_choice("of", of, {{"team", Scope::team}, {"received", Scope::received}, {"alone", Scope::alone}},
-                 "ranges and sightings that count: of all vehicles of the team; only those that `vehicle` measures "
-                 "itself, as in one-way navigation; none, as in dead reckoning");
+                 "ranges and relative positions used: those of all vehicles of the team; only those that `vehicle` "
+                 "measures itself, as in one-way navigation; none, as in dead reckoning");
   in.read_references("team", team, "vehicle",
                      "vehicles whose devices and packets count, with `vehicle`; unset: all of the world");
   read_from_s(in);
   in.read("start_std_m", options.start_std_m, sim::between(0, 1e6),
           "standard deviation of east and of north at the start");
   in.read_deg("start_heading_std_deg", options.start_heading_std_rad, sim::between(0, 180),
-              "standard deviation at the start of a heading that odometry continues");
+              "standard deviation of the initial heading that odometry propagates");
   in.read("sound_speed_std", options.sound_speed_std, sim::between(0, 1),
           "relative uncertainty of the speed of sound, the same for all ranges");
   std::vector<std::string> known;
@@ -211,10 +211,12 @@ int BoundMetric::index_of(const std::string& name) const {
 }
 
 void BoundMetric::move(bool scores) {
+  // Several messages of a step share its motion.
   if (moved_step_ == world_.step_number()) return;
   moved_step_ = world_.step_number();
   std::vector<TeamBound::Pose> poses;
   for (Member& member : members_) {
+    // A vehicle that was removed stays where it was last.
     if (const sim::Vehicle* vehicle = world_.find_vehicle(member.name)) {
       const sim::Pose X_WV = vehicle->X_WV();
       member.pose = {X_WV.translation(), sim::yaw_of(X_WV.linear())};

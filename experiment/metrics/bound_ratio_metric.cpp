@@ -69,7 +69,8 @@ void BoundRatioMetric::Params::check(const sim::MetricConfig& config, const sim:
     refuse(fmt::format("'{}' and '{}' must have the same 'from_s', got {:.6g} and {:.6g}", metric, bound, error->from_s,
                        limit->from_s));
   if (std::isfinite(error->until_s))
-    refuse(fmt::format("'{}' must not have 'until_s', got {:.6g}: the bound is until the end", metric, error->until_s));
+    refuse(fmt::format("'{}' must not have 'until_s', got {:.6g}: the bound covers the whole run", metric,
+                       error->until_s));
   if (error->dimensions != 2) refuse(fmt::format("'{}' must have 2 dimensions: the bound is horizontal", metric));
 }
 

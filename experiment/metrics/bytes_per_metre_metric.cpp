@@ -10,9 +10,9 @@ namespace {
 /// Bytes sent per meter of reduced rms error.
 class BytesPerMeterMetric final : public Metric {
  public:
-  static constexpr const char* meaning = "bytes sent for each meter by which the position error is smaller";
+  static constexpr const char* meaning = "bytes sent for each meter of reduction of the position error";
   static std::vector<sim::FigureKind> figures() {
-    return {{"bytes_per_metre", "bytes/m", "bytes_sent / reduction_m; none when the error did not become smaller"},
+    return {{"bytes_per_metre", "bytes/m", "bytes_sent / reduction_m; none if the error was not reduced"},
             {"bytes_sent", "bytes", "payload of the packets that the modems sent", true},
             {"reduction_m", "m", "rms error of `against` minus rms error of `metric`"}};
   }

@@ -72,6 +72,7 @@ class CollisionMetric final : public Metric {
       if (subject) world_.physics().watch_contacts(vehicle->group());
     }
     for (const auto& [name, object] : world_.objects()) {
+      // Standing on the ground is not a collision.
       const auto no_plane = [](const sim::PartConfig& part) { return part.shape != sim::PartShape::plane; };
       const bool planes = !object.config->any_part(no_plane);
       add_group(object.group(), 2 * object.number + 1, {false, params_.with.empty() ? !planes : params_.with == name});

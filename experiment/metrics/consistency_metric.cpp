@@ -12,7 +12,7 @@ namespace {
 /// Consistency of an estimate: whether its covariance matches its errors.
 class ConsistencyMetric final : public EstimateMetric {
  public:
-  static constexpr const char* meaning = "whether the covariance of the estimates says how large their errors are";
+  static constexpr const char* meaning = "whether the covariance of the estimates matches their errors";
   static std::vector<sim::FigureKind> figures() {
     return {{"nees_mean", "1", "mean normalized estimation error squared; the number of dimensions when consistent"},
             {"inside_95_share", "1", "share of the errors within their own 95 % bound; 0.95 when consistent"},

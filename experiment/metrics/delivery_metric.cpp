@@ -19,13 +19,13 @@ std::string meaning_of(sim::SignalLoss loss) {
     case sim::SignalLoss::half_duplex:
       return "the receiver was sending";
     case sim::SignalLoss::busy:
-      return "the receiver was taking another signal";
+      return "the receiver was receiving another signal";
     case sim::SignalLoss::captured:
       return "a stronger signal took the receiver over";
     case sim::SignalLoss::doppler:
       return "sender and receiver approach or separate too fast";
     case sim::SignalLoss::blocked:
-      return "something stands between; by radio: or an antenna is under water";
+      return "an obstacle blocks the path; by radio: or an antenna is under water";
     case sim::SignalLoss::out_of_water:
       return "sender or receiver left the water";
     case sim::SignalLoss::receiver_off:
@@ -35,7 +35,7 @@ std::string meaning_of(sim::SignalLoss loss) {
     case sim::SignalLoss::range:
       return "too far away";
     case sim::SignalLoss::sender_off:
-      return "the sender lost its power or was removed in the middle of it";
+      return "the sender lost power or was removed during the transmission";
     case sim::SignalLoss::shadow:
       return "no ray without a bounce arrived, and echoes were too weak";
   }
@@ -71,6 +71,7 @@ class DeliveryMetric final : public Metric {
     const LinkCounts counts = any_link_counts(world_, params_.vehicle, params_.device);
     std::int64_t all_lost = 0;
     for (const auto& [cause, count] : counts.lost) all_lost += count;
+    // A packet to all counts once for each receiver, so the ratio is of receptions, not of packets.
     const auto meant = static_cast<double>(counts.received + all_lost);
     add(figures, "sent", static_cast<double>(counts.sent));
     add(figures, "bytes_sent", static_cast<double>(counts.bytes_sent));

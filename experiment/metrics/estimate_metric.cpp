@@ -59,6 +59,7 @@ EstimateMetric::~EstimateMetric() {
 
 void EstimateMetric::after_step() {
   if (!begun_s_) begun_s_ = sim::to_seconds(world_.now());
+  // Clocks run ahead, so an estimate may be stamped later than now; it waits for its truth.
   std::erase_if(early_, [this](const Early& early) { return compare(early.time, early.estimate); });
   while (const auto message = mailbox_->take()) {
     try {
@@ -109,7 +110,7 @@ void EstimateMetric::warn_once(const std::string& channel, const std::string& wh
   if (what != warning_text_) {
     report_sample_count();
     warning_text_ = what;
-    warn(fmt::format("{}: {} (ignored, as are all more of this)", channel, what));
+    warn(fmt::format("{}: {} (ignored, as are all further ones of this kind)", channel, what));
   }
   ++ignored_;
 }
@@ -147,6 +148,7 @@ bool EstimateMetric::compare(sim::Time time, const Estimate& estimate) {
   sample.estimate_m = estimate.position_m;
   sample.travelled_m = truth->travelled_m;
   sample.nees = nees(estimate, error);
+  // Without a valid covariance there is no NEES, but the error still counts.
   if (std::isfinite(sample.nees)) {
     const Eigen::Matrix3d& P = *estimate.covariance_m2;
     sample.sigma_m = std::sqrt(flat ? P(0, 0) + P(1, 1) : P.trace());

@@ -47,6 +47,7 @@ class FormationErrorMetric final : public Metric {
     const sim::Vehicle* leader = world_.find_vehicle(params_.leader);
     if (vehicle == nullptr || leader == nullptr) return;
     const sim::Vector3d v_W = leader->bodies().front().second->v_WB_W();
+    // At rest the course is undefined, so the last one is kept.
     if (std::hypot(v_W.x(), v_W.y()) > course_min_mps)
       course_rad_ = std::atan2(v_W.y(), v_W.x());
     else if (std::isnan(course_rad_))

@@ -21,16 +21,16 @@ namespace {
 class MapMetric final : public Metric {
  public:
   static constexpr const char* meaning =
-      "occupancy grids on a channel against the true map of their time, by the cells that they know";
+      "occupancy grids on a channel compared with the true map of their time, over the cells that they know";
   static std::vector<sim::FigureKind> figures() {
     return {{"iou", "1", "intersection over union of the occupied cells, mean of the maps"},
-            {"final_iou", "1", "the same of the last map"},
-            {"still_iou", "1", "the same of the last map, of the cells that have not changed during the run"},
+            {"final_iou", "1", "the same for the last map"},
+            {"still_iou", "1", "the same for the last map, over the cells that have not changed during the run"},
             {"false_occupied_percent", "%", "free cells that the map calls occupied, mean of the maps"},
             {"false_free_percent", "%", "occupied cells that the map calls free, mean of the maps"},
             {"unknown_percent", "%", "free and occupied cells that the last map does not know"},
             {"stale_percent", "%",
-             "cells that the map has as they were earlier, of those that have changed so far, mean of the maps"},
+             "stale cells, which the map has in an earlier state, of those that have changed so far; mean of the maps"},
             {"stale_age_s", "s", "mean time since such a cell changed"},
             {"maps", "maps", "maps that were compared with the truth", true}};
   }
@@ -43,11 +43,12 @@ class MapMetric final : public Metric {
       read_channel(in);
       read_vehicle(in);
       read_period(in);
-      in.read("height_m", height_m, sim::between(-1e6, 1e6), "height of the true map above zero, such as of the lidar");
+      in.read("height_m", height_m, sim::between(-1e6, 1e6),
+              "height at which the true map is taken, such as that of the lidar");
       in.read("tolerance_cells", tolerance_cells, sim::between(0, 10),
               "an occupied cell is right when the other map has one at most this many columns and rows away");
       in.read("truth_period_s", truth_period_s, sim::between(0.01, 1e6),
-              "how often the true map is made to know when cells changed, besides with each map");
+              "interval at which the true map is made to detect changes of cells, in addition to each map");
     }
   };
 
@@ -61,13 +62,14 @@ class MapMetric final : public Metric {
 
   void after_step() override {
     const double now_s = sim::to_seconds(world_.now());
+    // Changes between two maps are only seen if the true map is taken more often than maps come.
     if (history_.started() && now_s >= next_truth_s_ && now_s <= params_.until_s) look(now_s);
     while (const auto message = mailbox_->take()) {
       try {
         take(decode_map(message->payload), now_s);
       } catch (const std::runtime_error& error) {
         if (bad_messages_++ == 0)
-          sim::log_warn("metric '{}': {}: {} (ignored, as are all more bad ones)", config().name, message->channel,
+          sim::log_warn("metric '{}': {}: {} (ignored, as are all further bad ones)", config().name, message->channel,
                         error.what());
       }
     }
@@ -83,6 +85,7 @@ class MapMetric final : public Metric {
     add(figures, "false_free_percent", mean(false_free_sum_, false_free_count_));
     add(figures, "unknown_percent", share(last_.unknown, last_.observable));
     add(figures, "stale_percent", mean(stale_sum_, stale_count_));
+    // A map without stale cells has none that are old, which is 0 and not unknown.
     add(figures, "stale_age_s", stale_cells_ > 0 ? stale_age_sum_s_ / stale_cells_ : maps_ > 0 ? 0 : no_figure);
     add(figures, "maps", maps_);
   }
@@ -139,7 +142,7 @@ class MapMetric final : public Metric {
     }
     next_truth_s_ = std::min(next_truth_s_, now_s);
     look(now_s);
-    // What a map of a later day has wrong may have changed days before.
+    // An error in a map of a later day may date from a change days before.
     if (now_s < params_.from_s) return;
     add_score(score_map(published.map, history_, params_.tolerance_cells, now_s));
   }

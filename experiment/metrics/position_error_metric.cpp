@@ -39,6 +39,7 @@ class PositionErrorMetric final : public EstimateMetric {
     add(figures, "final_m", any ? samples()->back().error_m : no_figure);
     add(figures, "max_m", any ? largest : no_figure);
     add(figures, "max_gap_s", max_gap_s());
+    // Over a shorter distance the ratio says nothing.
     add(figures, "per_distance_percent",
         distance_m >= min_distance_m ? 100 * samples()->back().error_m / distance_m : no_figure);
     add(figures, "samples", count);

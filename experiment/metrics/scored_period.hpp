@@ -16,7 +16,7 @@ namespace experiment {
 struct ScoredPeriod : sim::MetricParams {
   double until_s = std::numeric_limits<double>::infinity();
 
-  /// ` until 3700 s`, or nothing.
+  /// ` until 3700 s`, or an empty text.
   std::string to_until_s() const { return std::isfinite(until_s) ? fmt::format(" until {:.6g} s", until_s) : ""; }
 
  protected:

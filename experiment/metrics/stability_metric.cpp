@@ -16,17 +16,17 @@ class StabilityMetric final : public Metric {
   static constexpr const char* meaning = "how safely a vehicle stands on its contacts";
   static std::vector<sim::FigureKind> figures() {
     return {
-        {"static_min_m", "m", "least distance of the center of mass, seen from above, to the edge of its support"},
+        {"static_min_m", "m", "smallest distance of the center of mass, seen from above, to the edge of its support"},
         {"static_mean_m", "m", "mean of this distance"},
-        {"zmp_min_m", "m", "least distance of the center of pressure (ZMP) to the edge; 0: it is about to tip"},
+        {"zmp_min_m", "m", "smallest distance of the center of pressure (ZMP) to the edge; 0: it is about to tip"},
         {"capture_min_m", "m",
-         "least distance of the capture point to the edge; negative: a pendulum of constant height would fall without "
-         "a step"},
-        {"nesm_min_m", "m", "least height that the center of mass must rise to tip over"},
-        {"carried_share", "1", "share of the time in which three contacts or more carried it"},
-        {"static_m", "m", "distance of the center of mass to the edge at present; null: no three contacts carry it"},
-        {"zmp_m", "m", "the same of the center of pressure"},
-        {"capture_m", "m", "the same of the capture point"}};
+         "smallest distance of the capture point to the edge; negative: a pendulum of constant height would fall "
+         "without a step"},
+        {"nesm_min_m", "m", "smallest height that the center of mass must rise to tip over"},
+        {"carried_share", "1", "share of the time with three or more contacts"},
+        {"static_m", "m", "distance of the center of mass to the edge at present; null: fewer than three contacts"},
+        {"zmp_m", "m", "the same for the center of pressure"},
+        {"capture_m", "m", "the same for the capture point"}};
   }
   struct Params final : sim::MetricParams {
     void read(sim::ParamReader& in) override {
@@ -45,6 +45,7 @@ class StabilityMetric final : public Metric {
     if (vehicle == nullptr || sim::to_seconds(world_.now()) < params_.from_s) return;
     ++steps_;
     const auto support = support_of(world_, *vehicle);
+    // In the air, or on one or two contacts, there is no support, and no margin at present.
     now_ = {no_figure, no_figure, no_figure};
     if (!support) return;
     ++carried_;
@@ -62,7 +63,9 @@ class StabilityMetric final : public Metric {
     // Immediately, not after the next step: a restored world does not report contacts yet.
     if (archive.restoring()) watch();
   }
-  std::string why_none(const std::string&) const override { return "the vehicle did not stand on three contacts"; }
+  std::string why_none(const std::string&) const override {
+    return "the vehicle did not stand on three or more contacts";
+  }
 
   void add_figures(Figures& figures) const override {
     const auto min = [&](std::size_t i) { return carried_ > 0 ? least_[i] : no_figure; };

@@ -69,7 +69,7 @@ class TrajectoryMetric final : public Metric {
             {"segment_m", "m",
              "root mean square of the position errors at the end of segments of `segment_m`, seen from "
              "their starts"},
-            {"segment_deg", "deg", "the same of the headings"},
+            {"segment_deg", "deg", "the same for the headings"},
             {"segments", "segments", "segments that were compared, one from every meter traveled", true},
             {"lost_s", "s", "longest time with a position error above `lost_m`, from the first estimate on"},
             {"poses", "poses", "poses that were compared with the truth", true}};
@@ -102,7 +102,7 @@ class TrajectoryMetric final : public Metric {
         take(message->payload);
       } catch (const std::runtime_error& error) {
         if (bad_messages_++ == 0)
-          sim::log_warn("metric '{}': {}: {} (ignored, as are all more bad ones)", config().name, message->channel,
+          sim::log_warn("metric '{}': {}: {} (ignored, as are all further bad ones)", config().name, message->channel,
                         error.what());
       }
     }
@@ -119,6 +119,7 @@ class TrajectoryMetric final : public Metric {
         segments_ > 0 ? sim::radians_to_degrees(std::sqrt(segment_squares_rad2_ / segments_)) : no_figure);
     add(figures, "segments", segments_);
     const double end_s = std::min(sim::to_seconds(world_.now()), params_.until_s);
+    // A vehicle that is lost at the end is lost until then.
     const double lost_s = lost_since_s_ ? end_s - *lost_since_s_ : 0;
     add(figures, "lost_s", any ? std::max(max_lost_s_, lost_s) : no_figure);
     add(figures, "poses", sums_.count);

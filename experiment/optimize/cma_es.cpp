@@ -37,9 +37,12 @@ std::vector<Point> CmaEs::propose() {
   for (int k = 0; k < population_; ++k) {
     random_.begin_step(proposed_++);
     Eigen::VectorXd z(n);
+    // N(mean, sigma^2 B D^2 B') by its principal axes (Hansen, The CMA Evolution Strategy: A Tutorial).
     for (double& one : z) one = random_.gaussian();
     samples_.col(k) = mean_ + sigma_ * (B_ * D_.cwiseProduct(z));
     Point& point = points.emplace_back();
+    // Points are reflected into their ranges, but the search learns from the unreflected samples, whose distribution
+    // is normal.
     for (const double x : samples_.col(k)) point.push_back(reflected(x));
   }
   return points;

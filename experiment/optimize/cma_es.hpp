@@ -16,7 +16,7 @@ class CmaEs final : public Optimizer {
  public:
   struct Options {
     int population = 0;  ///< candidates of a generation; 0: 4 + 3 ln n
-    double sigma = 0.3;  ///< first standard deviation of each coordinate
+    double sigma = 0.3;  ///< initial standard deviation of each coordinate
     std::uint64_t seed = 1;
   };
 

@@ -21,6 +21,8 @@ Point GeneticAlgorithm::child() {
   const Point& b = parent();
   Point child;
   for (std::size_t i = 0; i < a.size(); ++i) {
+    // Blend crossover (BLX-alpha, Eshelman and Schaffer 1993): a child may lie somewhat beyond its parents, or the
+    // range of a population could only shrink.
     const double reach = options_.blend * std::abs(a[i] - b[i]);
     const double low = std::min(a[i], b[i]) - reach, high = std::max(a[i], b[i]) + reach;
     double x = low + random_.uniform() * (high - low);

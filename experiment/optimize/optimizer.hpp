@@ -9,7 +9,7 @@ namespace experiment {
 /// Point of the search space: each coordinate from 0 to 1.
 using Point = std::vector<double>;
 
-/// Search for the point of the greatest value, in generations: propose() for points, learn() their values.  Its random
+/// Search for the point with the largest value, in generations: propose() for points, learn() their values.  Its random
 /// numbers depend on the seed and the number of the candidate only.
 class Optimizer {
  public:

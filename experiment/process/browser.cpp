@@ -29,7 +29,7 @@ int start(std::vector<std::string> command, pid_t& pid) {
   std::vector<char*> arguments;
   for (std::string& word : command) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  // Its output is discarded: ours may be data, and browsers write a lot for as long as they run.
+  // The browser's output is discarded: ours may be data, and browsers write a lot for as long as they run.
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);

@@ -58,6 +58,7 @@ class ChannelCheck {
       const std::string who = "client " + in_quotes(client);
       std::vector<std::string> unread;
       for (const auto& [channel, each] : channels) {
+        // Declared programs are checked before the run, with the line of the world.
         if (declared_.contains(channel) || channel.starts_with("sim.")) continue;
         if (each.published > 0) check_published(who, channel, each, unread);
         if (each.is_subscribed && !each.has_received && !spoken_.contains(channel))

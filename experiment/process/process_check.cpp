@@ -136,6 +136,7 @@ void check_slots(const sim::WorldConfig& world, const std::vector<Program>& prog
       if (!later.is_shipped() || !earlier.is_shipped()) continue;
       const auto slots = later.slots(), taken = earlier.slots();
       if (!slots || !taken || !slots->meets(*taken)) continue;
+      // Packets only collide where both are received.
       if (!share_the_water(world, later.vehicle(), earlier.vehicle())) continue;
       const std::string both =
           slots->cycle_us == taken->cycle_us
@@ -247,6 +248,7 @@ void warn_of_unchecked_arguments(const sim::LoadedWorld& loaded, sim::Warnings& 
     const WrittenProcess written = written_process(loaded, i);
     if (!written.program.empty() || process.command.empty()) continue;
     const std::string& program = process.command.front();
+    // Only a hint is derived from the declaration; its own errors are reported elsewhere.
     sim::Diagnostics ignored;
     const sim::FoundProgram found =
         sim::find_program(program, folders, loaded.config.files.get(), written.place, "", ignored);

@@ -9,7 +9,7 @@
 
 namespace experiment {
 
-/// Warns of programs of a world that cannot work as configured, as far as their `args:` and declarations show:
+/// Warns of programs of a world that cannot work as configured, judging by their `args:` and declarations:
 /// overlapping slots, a vehicle to follow that does not exist or never sends, a different name in the lockstep (all for
 /// programs that come with Shoal), metrics of channels on which none of the programs publishes.
 void warn_of_processes(const sim::LoadedWorld& loaded, sim::Warnings& warnings);

@@ -65,6 +65,7 @@ bool can_be_started(const std::string& program) {
   const char* path = std::getenv("PATH");
   std::istringstream directories(path != nullptr ? path : "");
   for (std::string directory; std::getline(directories, directory, ':');)
+    // An empty entry of PATH is the working folder (POSIX).
     if (is_program((directory.empty() ? "." : directory) + "/" + found)) return true;
   return false;
 }
@@ -128,6 +129,7 @@ void ProcessGroup::stop() {
     reap();
     if (!empty()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
+  // A process that ignores SIGTERM must not outlive the run.
   signal_all(SIGKILL);
   for (const Running& process : running_)
     while (waitpid(process.pid, nullptr, 0) < 0 && errno == EINTR) {

@@ -42,6 +42,7 @@ WrittenProcess written_process(const sim::LoadedWorld& loaded, std::size_t index
   const sim::ConfigNode* list = loaded.resolved.find("processes");
   if (list == nullptr || index >= list->items.size()) return written;
   const sim::ConfigNode& item = list->items[index];
+  // The resolved tree has the places in files, which the configuration does not keep.
   written.place = item.place;
   if (const sim::ConfigNode* program = item.find("program")) {
     written.program = program->scalar;

@@ -139,6 +139,7 @@ std::string table(const std::vector<Cell>& cells) {
   html += "<th>B/h</th><th>us/event</th></tr></thead>\n<tbody>\n";
   for (const std::string& algorithm : distinct(cells, &Cell::algorithm)) {
     html += "<tr><th scope=\"row\">" + html_text(algorithm) + "</th>";
+    // A modem must carry the payload in the worst world. `fmax` ignores NaN, the figure of a world without a result.
     double max_bytes = nan, max_us = nan;
     for (const std::string& world : worlds) {
       const auto cell = std::find_if(cells.begin(), cells.end(), [&](const Cell& each) {
@@ -158,8 +159,8 @@ std::string table(const std::vector<Cell>& cells) {
          "</tbody></table></div>\n<p>rms: root of the mean square over the seeds, with the 95 % bootstrap interval. "
          "NEES: mean over the seeds with Student's 95 % interval; 2 is consistent. bound / rms: efficiency against the "
          "reference of the metric bound; an estimator that knows the speed of a craft between its fixes, which the "
-         "reference does not, can be above 1. B/h: payload that a vehicle says, us/event: CPU time, each the "
-         "greatest of the worlds.</p>\n";
+         "reference does not, can exceed 1. B/h: payload that a vehicle sends, us/event: CPU time, each the largest of "
+         "the worlds.</p>\n";
 }
 
 std::string pairs(const JsonReader& in) {

@@ -63,6 +63,7 @@ std::string figures_html(const std::vector<RunMetric>& metrics, const std::vecto
     };
     std::vector<const RunMetric::Figure*> shown, zeros;
     for (const RunMetric::Figure& figure : metric.figures) {
+      // Counts of 0, such as causes of loss that did not happen, would hide the others.
       const bool idle = figure.kind != nullptr && figure.kind->is_count && figure.value == 0.0;
       (idle && &figure != &metric.figures.front() && !is_in_a_rule(figure) ? zeros : shown).push_back(&figure);
     }

@@ -90,6 +90,7 @@ std::string processes_html(const RunRecord& run) {
   std::set<fs::path> logs;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(run.directory, error))
+    // plot.log is that of gnuplot, not of a program.
     if (entry.path().extension() == ".log" && entry.path().filename() != "plot.log") logs.insert(entry.path());
   for (const fs::path& log : logs) {
     std::string text;
@@ -130,6 +131,7 @@ std::string warnings_html(const RunRecord& run) {
   warn(run.quick_steps,
        "steps used QuickStep, for islands of bodies that are too large or that ODE's exact solver gave up.");
   const auto failed = [](const RunRecord::Process& process) { return process.failed; };
+  // A run that was judged lists them among its failed rules.
   if (run.judgement == Judgement::not_judged && std::any_of(run.processes.begin(), run.processes.end(), failed))
     warnings.emplace_back("Programs of the world failed.");
   for (const auto& [name, value] : run.metrics)
@@ -164,6 +166,7 @@ std::string rules_html(const std::vector<RunRecord::Rule>& rules) {
   }
   std::string html;
   if (!failed.empty()) html += "<ul class=\"rules\">\n" + failed + "</ul>\n";
+  // Rules that hold are folded: failed ones are what a reader looks for.
   if (!held.empty())
     html += html_details(count == 1 ? "The rule that holds" : fmt::format("The {} rules that hold", count),
                          "<ul class=\"rules\">\n" + held + "</ul>\n");

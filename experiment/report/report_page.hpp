@@ -31,7 +31,7 @@ std::string verdict_html(bool passed);
 std::string rules_html(const std::vector<RunRecord::Rule>& rules);
 /// Returns a box with a colored edge and the content `html`.
 std::string verdict_box(Judgement judgement, const std::string& html);
-/// Returns texts as a list; nothing when there are none.
+/// Returns texts as a list; empty if there are none.
 std::string list_html(const std::vector<std::string>& texts);
 /// Returns a table of names and values.
 std::string facts_table(const std::vector<std::pair<std::string, std::string>>& facts);

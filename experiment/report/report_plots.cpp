@@ -59,6 +59,7 @@ std::string plots_html(const std::string& directory, const std::vector<std::stri
       html += note(file + " is missing.");
       continue;
     }
+    // A run that was killed may leave an incomplete plot, which some browsers show as broken.
     if (!is_whole_png(bytes)) {
       sim::log_warn("{}/{}: is not a complete PNG file; the page omits it", directory, file);
       html += note(file + " is not a complete PNG file.");

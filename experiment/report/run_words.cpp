@@ -116,6 +116,7 @@ std::vector<std::string> position_sentences(const std::vector<RunMetric>& metric
     else
       known->second.push_back(metric);
   }
+  // Sentences for each of many vehicles would not be read.
   if (by_vehicle.size() > max_vehicles_by_name) return {many_vehicles_sentence(by_vehicle)};
   std::vector<std::string> sentences;
   for (const auto& [vehicle, of_vehicle] : by_vehicle) sentences.push_back(position_sentence(vehicle, of_vehicle));
@@ -133,7 +134,7 @@ std::string consistency_sentence(const RunMetric& metric) {
 
 std::string bound_sentence(const RunMetric& metric) {
   const auto rms_m = metric.value("rms_m");
-  if (!rms_m) return metric.name + ": no time was counted.";
+  if (!rms_m) return metric.name + ": no time was scored.";
   return fmt::format("{}: the reference for the error of {} is {} rms, with {} and {}.", metric.name,
                      metric.vehicle.empty() ? "the position" : metric.vehicle, length_text(*rms_m),
                      counted(metric.value("ranges").value_or(0), "range", "ranges"),
@@ -248,6 +249,7 @@ std::vector<std::string> findings_in_words(const std::vector<RunMetric>& metrics
   for (const RunMetric* metric : of_type(metrics, "position_error"))
     if (!after_distance(*metric).empty()) reported.insert(metric->vehicle);
   Metrics distances;
+  // A sentence about the position already has the distance.
   for (const RunMetric* metric : of_type(metrics, "distance"))
     if (metric->vehicle.empty() || !reported.contains(metric->vehicle)) distances.push_back(metric);
   for (const RunMetric* metric : distances) sentences.push_back(distance_sentence(*metric));

@@ -51,6 +51,7 @@ class ChartWriter {
     ChartAxis x_axis(chart.log_x), y_axis;
     for (const ChartCurve& curve : chart.curves)
       for (const ChartPoint& point : curve.points) {
+        // A figure without a value at some point leaves a gap in its curve.
         if (!std::isfinite(point.mean)) continue;
         x_axis.add(point.x);
         for (const double value : {point.mean, point.low, point.high}) y_axis.add(value);
@@ -252,6 +253,7 @@ std::string convergence_charts(const JsonReader& in, const std::map<std::string,
     const JsonReader reader(item, in.where() + ": convergence");
     const std::string figure = reader.text("figure");
     const std::string title = figure + " over the number of seeds";
+    // Entries of one figure follow each other and share a chart.
     if (charts.empty() || charts.back().title != title)
       charts.push_back({title, "seeds", with_unit(figure, units), false, {}});
     ChartCurve& curve = charts.back().curves.emplace_back();
@@ -311,6 +313,7 @@ std::string study_extremes_html(const JsonReader& in, const std::string& directo
     const JsonReader run(item, in.where() + ": extremes");
     std::string links;
     for (const std::string& folder : {run.text("shown"), run.text("folder")}) {
+      // study.json may come from someone else: its links stay below the folder of the study.
       if (folder.starts_with('/') || folder.find("..") != std::string::npos)
         throw std::runtime_error(run.where() + ": 'folder' must be a folder of the study");
       links += link_to(directory, folder + "/run.html", "view") + link_to(directory, folder + "/film.mp4", "film") +

@@ -15,7 +15,7 @@ namespace experiment {
 std::string study_charts_html(const JsonReader& in, const std::map<std::string, std::string>& units);
 /// Returns the table of differences in pairs of equal seeds.
 std::string study_comparisons_html(const JsonReader& in);
-/// Returns the runs with the greatest and smallest figures, with links to their pages and films in the folder of the
+/// Returns the runs with the largest and smallest figures, with links to their pages and films in the folder of the
 /// study.
 std::string study_extremes_html(const JsonReader& in, const std::string& directory);
 

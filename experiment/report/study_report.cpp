@@ -88,7 +88,7 @@ std::vector<std::string> all_figures(const std::vector<StudyCaseRecord>& cases) 
 std::string figures_html(const JsonReader& in, const std::vector<StudyCaseRecord>& cases) {
   FigureColumns columns({"runs", "mean", "mean, 95 % interval", "std", "min", "max", "median"}, all_figures(cases));
   auto seeds = static_cast<double>(in.list("seeds").size());
-  // Of a study with factors: runs at each of its points.
+  // A study with factors has runs at each of its points.
   if (in.has("points") && !cases.empty())
     seeds *= static_cast<double>(std::max<std::size_t>(1, in.list("points").size() / cases.size()));
   for (const std::string& name : texts_of(in, "figures"))

@@ -54,7 +54,7 @@ void remove_earlier_run(const std::string& directory) {
     if (!std::filesystem::is_directory(entry.symlink_status(error))) continue;
     for (const char* file : {"summary.json", "metrics.csv", "errors.csv", "tracks.csv", "world.yaml"})
       remove_file(branch + "/" + file);
-    std::filesystem::remove(branch, error);  // unless it has other files
+    std::filesystem::remove(branch, error);  // fails if other files are in it, which stay
   }
 }
 

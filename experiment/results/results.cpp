@@ -342,6 +342,7 @@ Results::~Results() {
 }
 
 void Results::after_step() {
+  // Flushed once a second, so that a killed run leaves its tracks.
   if (world_.step_number() % steps_per_second_ == 0 && std::fflush(tracks_) != 0 && !error_)
     error_ = cannot_write(directory_ + "/tracks.csv", std::strerror(errno)).what();
   if (world_.step_number() % every_steps_ != 0) return;
@@ -417,6 +418,7 @@ void Results::keep_branch(const Summary& left, const Scoring& scoring, const sim
   const std::string directory = directory_ + "/branch" + std::to_string(left.branch);
   remove_link(directory);
   std::error_code error;
+  // Only a folder that this run made may be removed again.
   if (!std::filesystem::exists(directory, error)) kept_ = directory;
   write_summary(directory, left);
   write_metrics(directory, left);
@@ -440,6 +442,7 @@ void Results::close_tracks() {
 void Results::finish(const Summary& summary, const Scoring& scoring, const sim::ConfigNode& resolved,
                      const std::function<bool()>& give_up) {
   std::optional<std::string> first_error;
+  // Each file is tried, so that one error does not lose the others; the first one is reported.
   const auto attempt = [&](const auto& write_it) {
     try {
       write_it();

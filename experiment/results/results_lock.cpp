@@ -15,6 +15,7 @@ namespace experiment {
 ResultsLock::ResultsLock(const std::string& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
+  // The folder itself is locked, so no lock file can be left behind.
   folder_ = bridges::FileDescriptor(open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (error || folder_.number() < 0)
     throw RunError(4, "bus",

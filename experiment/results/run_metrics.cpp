@@ -89,6 +89,7 @@ std::vector<RunMetric> metrics_of(const RunRecord& run) {
     for (RunMetric::Figure& figure : metric.figures) {
       const std::optional<double>& value =
           run.metrics.at(figure.name.empty() ? metric.name : metric.name + "." + figure.name);
+      // null in the file is a figure that there is no value for.
       if (value && std::isfinite(*value)) figure.value = value;
     }
   read_world(run.directory + "/world.yaml", metrics);

@@ -25,7 +25,7 @@ struct RunMetric {
   int dimensions = 0;                     ///< of an error; 0: unknown
   std::vector<Figure> figures;            ///< the most important one first
 
-  /// Returns the value; nothing also when the metric has no such figure.
+  /// Returns the value; std::nullopt also if the metric has no such figure.
   std::optional<double> value(const std::string& figure) const;
 };
 

@@ -62,6 +62,7 @@ void SummaryFile::make_room(const std::string& path, std::size_t bytes) {
 }
 
 void SummaryFile::write(const std::string& text) {
+  // The room was reserved at the start, so that a full disk cannot prevent the summary.
   if (rooms_.empty()) make_room(path_ + ".part", text.size());
   const Room room = std::move(rooms_.back());
   rooms_.pop_back();

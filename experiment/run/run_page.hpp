@@ -19,7 +19,7 @@ namespace experiment {
 
 /// Options of the live page.
 struct ViewOptions {
-  std::string host = "127.0.0.1";    ///< address to listen at; another than loopback lets other machines see the run
+  std::string host = "127.0.0.1";    ///< address to listen on; any but loopback lets other machines see the run
   std::uint16_t port = 8765;         ///< first port to try
   int port_tries = 20;               ///< 1: this port or none
   std::vector<std::string> origins;  ///< web sites whose pages may connect

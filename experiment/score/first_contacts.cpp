@@ -91,6 +91,7 @@ void FirstContacts::look_at(const sim::ContactReport& contact) {
   const std::size_t first = group_of(contact.parts[0]), second = group_of(contact.parts[1]);
   if (first == second || std::max(first, second) >= groups_.size()) return;
   const Group &a = groups_[first], &b = groups_[second];
+  // Standing on the ground is normal, but not for a craft that swims.
   if ((a.ground && !b.swims) || (b.ground && !a.swims)) return;
   const bool up = contact.normal_W.z() > carries, down = contact.normal_W.z() < -carries;
   if (rests_on(a, b, up) || rests_on(b, a, down)) return;
@@ -116,12 +117,13 @@ void FirstContacts::touch(const Group& a, const Group& b) {
     const bool in_order = a.is_vehicle && (!b.is_vehicle || a.who < b.who);
     contact = {in_order ? a.name : b.name, in_order ? b.name : a.name, now_s, 0, now_s};
   }
+  // A contact flickers from step to step; apart for some time it counts as a new one.
   if (fresh || now_s - contact.last_s > parted_after_s) ++contact.count;
   contact.last_s = now_s;
   if (fresh) report(pair, contact);
 }
 
-/// Reports a contact once, also when the run is rewound and repeats it.
+/// Reports a contact once, even when the run is rewound and repeats it.
 void FirstContacts::report(const Pair& pair, const Contact& contact) {
   if (!report_ || reported_.size() > max_lines || !reported_.emplace(pair, contact.first_s).second) return;
   if (reported_.size() > max_lines)

@@ -39,7 +39,7 @@ class FirstContacts {
 
   /// `world` must outlive this.  `report` may be empty.
   explicit FirstContacts(sim::World& world, Report report = {});
-  /// To be called after every step.
+  /// Call after every step.
   void after_step();
   /// Returns the contacts in the order of the first ones.
   std::vector<Contact> all() const;

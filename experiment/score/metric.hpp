@@ -83,7 +83,7 @@ class Metric {
     while (mailbox.take()) {
     }
   }
-  /// For error messages: ` from 120 s on`; empty when the metric counts from the start.
+  /// Returns a phrase for error messages, ` from 120 s on`; empty when the metric counts from the start.
   std::string since_from_s() const {
     const double from_s = config_.params->from_s;
     return from_s > 0 ? fmt::format(" from {:.6g} s on", from_s) : "";

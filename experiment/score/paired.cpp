@@ -62,6 +62,8 @@ double wilcoxon_test(const std::vector<double>& differences) {
   if (count == 0) return 1;
   const std::size_t all_doubled = count * (count + 1);
   const std::size_t smaller_doubled = std::min(ranks.positive, all_doubled - ranks.positive);
+  // Exact for few pairs; else the normal approximation with corrections for ties and continuity (Hollander, Wolfe and
+  // Chicken 2014, 3.1).
   if (count <= max_exact) return std::min(1.0, 2 * share_of_subsets(ranks.doubled, smaller_doubled));
   const auto n = static_cast<double>(count);
   const double all = static_cast<double>(all_doubled) / 2, smaller = static_cast<double>(smaller_doubled) / 2;

@@ -26,7 +26,7 @@ PairedComparison compare_pairs(std::vector<double> differences);
 double sign_test(std::size_t higher, std::size_t lower);
 
 /// Two-sided probability of Wilcoxon's signed-rank test (Wilcoxon 1945).  Differences of 0 are left out, equal sizes
-/// have their mean rank.  For up to 50 differences it is exact, also with ties: the share of all choices of signs,
+/// have their mean rank.  For up to 50 differences it is exact, even with ties: the share of all choices of signs,
 /// given the ranks, whose smaller sum of ranks is not greater (Hollander, Wolfe and Chicken, section 3.1).  Otherwise
 /// by the normal distribution with corrections for ties and for continuity.  1 without differences.
 double wilcoxon_test(const std::vector<double>& differences);

@@ -32,7 +32,7 @@ class Scoring {
   /// `world` must outlive this.  `report`: see FirstContacts.
   explicit Scoring(sim::World& world, FirstContacts::Report report = {});
   ~Scoring();
-  /// To be called after every step.
+  /// Call after every step.
   void after_step();
 
   /// Returns the figures of every metric, by name.  They are NaN before the from_s of the metric.

@@ -95,6 +95,7 @@ double margin_in(const std::vector<Vector2d>& polygon, const Vector2d& point) {
     const double distance = cross(along, point - a) / along.norm();
     is_inside = is_inside && distance >= 0;
     inside = std::min(inside, distance);
+    // Outside of a polygon the nearest point may be a corner.
     const double share = std::clamp((point - a).dot(along) / along.squaredNorm(), 0.0, 1.0);
     outside = std::min(outside, (point - a - share * along).norm());
   }

@@ -26,10 +26,10 @@ class TruthHistory {
 
   /// The world must outlive this, and keep the vehicle.
   TruthHistory(const sim::World& world, const sim::Vehicle& vehicle);
-  /// To be called once after every step.
+  /// Call once after every step.
   void after_step();
   const Truth& now() const;
-  /// Returns the truth at the step nearest to a time; nothing when it lies in the future or before the history.
+  /// Returns the truth at the step nearest to a time; std::nullopt if it lies in the future or before the history.
   std::optional<Truth> at(sim::Time time) const;
   void visit_state(sim::StateArchive& archive);
 

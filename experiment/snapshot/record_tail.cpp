@@ -67,6 +67,7 @@ Survey survey(const std::string& record) {
     if (first) found.first = {event.offset, event.utime};
     found.last_utime = std::max(found.last_utime, event.utime);
     if (is_first_piece(event)) found.snapshots.push_back({event.offset, event.utime});
+    // The last readable one: the record may end in the middle of a message.
     if (event.channel == "sim.info")
       if (auto info = decoded<shoal::sim_info_t>(event)) found.info = std::move(info);
   }

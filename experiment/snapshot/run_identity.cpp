@@ -21,6 +21,7 @@ namespace {
 const std::string no_hash(16, '-');
 
 std::string processor_class() {
+// Compilers and libraries choose their code by these levels, and with it the last bits of results.
 #if defined(__x86_64__)
   __builtin_cpu_init();
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl")) return "x86-64-v4";
@@ -77,6 +78,7 @@ std::vector<std::string> changed_files(const std::string& text) {
   std::vector<std::string> changes;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
+    // 16 digits, a blank and a path; other lines are of a newer format.
     if (line.size() < 18 || line[16] != ' ') continue;
     const std::string hash = line.substr(0, 16), path = line.substr(17);
     if (hash == no_hash) continue;

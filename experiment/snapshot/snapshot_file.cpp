@@ -118,10 +118,12 @@ Snapshot snapshot_from_bytes(const sim::Bytes& bytes, const std::string& path) {
 
 void write_snapshot(const std::string& path, const Snapshot& snapshot) {
   const sim::Bytes bytes = to_bytes(snapshot);
+  // The number of the process, so that two runs do not write one file.
   const std::string unfinished = path + ".part" + std::to_string(getpid());
   const auto file = make_part_file<SnapshotFileError>(path, unfinished);
   try {
     write_all(file.number(), bytes, path);
+    // Some file systems cannot be synchronized (EINVAL).
     if (fsync(file.number()) != 0 && errno != EINVAL) throw cannot("written", path, errno);
     if (rename(unfinished.c_str(), path.c_str()) != 0) throw cannot("written", path, errno);
   } catch (...) {

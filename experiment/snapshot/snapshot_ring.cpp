@@ -111,6 +111,7 @@ sim::Bytes without_zeros(std::span<const std::byte> bytes) {
 sim::Bytes with_zeros(std::span<const std::byte> bytes) {
   sim::Bytes out(number_at(bytes, 0));
   const std::size_t words = out.size() / word_bytes;
+  // The size, then pairs of numbers: so many words of zeros, so many others, which follow.
   std::size_t from = sizeof(std::uint64_t), to = 0;
   while (to < words) {
     const std::uint64_t pair = number_at(bytes, from);
@@ -134,6 +135,7 @@ sim::Bytes deflated(std::span<const std::byte> bytes) {
   sim::Bytes out(sizeof(std::uint64_t) + room);
   const std::uint64_t size = bytes.size();
   std::memcpy(out.data(), &size, sizeof size);
+  // Level 1: the ring is filled while the run waits, and differences of snapshots are mostly zeros.
   const int outcome = compress2(reinterpret_cast<Bytef*>(out.data() + sizeof size), &room,
                                 reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()), 1);
   if (outcome != Z_OK) throw std::runtime_error("a snapshot cannot be compressed");
@@ -233,6 +235,7 @@ sim::Bytes SnapshotRing::get(std::int64_t step) const {
   for (const Packed& other : family->others) {
     if (other.step != step) continue;
     sim::Bytes bytes = other.unpacked();
+    // All but the first snapshot of a family are stored as differences from it.
     take_difference(bytes, whole);
     return bytes;
   }

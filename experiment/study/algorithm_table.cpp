@@ -97,6 +97,7 @@ AlgorithmCell cell_of(const World& world, const std::string& label) {
   for (const StudyRun* run : world.runs) {
     const double rms = figure_of(*run, label + ".rms_m"), ratio = figure_of(*run, label + ".ratio");
     if (!std::isfinite(rms)) continue;
+    // An efficiency of some seeds would belong to another set of runs than the rms.
     bounded = bounded && ratio > 0;
     seeds.push_back({rms * rms, rms / ratio * (rms / ratio)});
     nees.push_back(figure_of(*run, label + ".nees_mean"));
@@ -120,6 +121,7 @@ AlgorithmCell cell_of(const World& world, const std::string& label) {
   cell.trust = trust_of(of_nees);
   cell.inside_95 = statistics_of(inside).mean;
   cell.bytes_per_h = statistics_of(bytes).mean;
+  // Other work on the machine only makes times longer, so the median is less disturbed than the mean.
   cell.us_per_event = statistics_of(times).median;
   return cell;
 }
@@ -132,11 +134,13 @@ AlgorithmPair pair_of(const World& world, const std::string& label, const std::s
   std::vector<double> logarithms;
   for (const StudyRun* run : world.runs) {
     const double log = std::log(figure_of(*run, label + ".rms_m") / figure_of(*run, base + ".rms_m"));
+    // Runs of two algorithms that agree to rounding are ties for the test of ranks.
     if (std::isfinite(log)) logarithms.push_back(std::abs(log) < equal_log ? 0 : log);
   }
   pair.pairs = logarithms.size();
   if (logarithms.empty()) return pair;
   const PairedComparison compared = compare_pairs(std::move(logarithms));
+  // Ratios are averaged by their logarithms: twice as good and half as good cancel.
   pair.factor = std::exp(compared.mean);
   pair.factor_95 = {std::exp(compared.mean_95.low), std::exp(compared.mean_95.high)};
   pair.wilcoxon_p = compared.wilcoxon_p;

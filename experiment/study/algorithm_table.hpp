@@ -56,8 +56,8 @@ class AlgorithmTable {
 
   const std::vector<AlgorithmCell>& cells() const { return cells_; }  ///< by world, then by algorithm
   const std::vector<AlgorithmPair>& pairs() const { return pairs_; }  ///< of all but the base of the study
-  /// Returns one sentence for each world: who has the smallest rms, its margin, and whether its covariance is
-  /// consistent.
+  /// Returns one sentence for each world: which algorithm has the smallest rms, its margin, and whether its covariance
+  /// is consistent.
   std::vector<std::string> sentences() const;
 
   std::string text() const;

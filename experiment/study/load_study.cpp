@@ -87,7 +87,7 @@ class NameCheck {
                const sim::SourcePlace& place, const std::string& who) {
     if (!std::binary_search(known.begin(), known.end(), name))
       diagnostics_.error(place, who,
-                         "'" + std::string(key) + "' names nothing of this world: '" +
+                         "'" + std::string(key) + "' names nothing in this world: '" +
                              sim::shortened(sim::printable(name)) + "'; known: " + sim::list_text(known));
   }
 
@@ -265,7 +265,7 @@ LoadedStudy load_study(const std::string& path, const StudyChanges& changes) {
       until && until->batch < min_sure_batch && !changes.tuned && !changes.planned)
     (changes.load.warnings != nullptr ? *changes.load.warnings : warnings)
         .warn(until->place, "",
-              "'batch' is " + std::to_string(until->batch) + ": 'until' may hold by chance after fewer than " +
+              "'batch' is " + std::to_string(until->batch) + ": 'until' may be met by chance after fewer than " +
                   std::to_string(min_sure_batch) + " seeds");
   for (const StudyCase& each : study.config.cases) {
     sim::LoadOptions options = changes.load;

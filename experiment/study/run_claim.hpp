@@ -9,7 +9,7 @@
 namespace experiment {
 
 /// Claim on the folder of a run against other processes that execute the same study.  It ends with the process, however
-/// that ends, and on network file systems too as far as they have locks.
+/// that ends, and on network file systems that have locks.
 class RunClaim {
  public:
   /// Creates the folder, below `root`: that of the study.  Throws std::runtime_error when that is not possible, or a

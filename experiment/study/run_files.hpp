@@ -17,7 +17,7 @@ struct RunStamp {
   std::string inputs;   ///< see inputs_of()
   std::string version;  ///< of shoal
 };
-/// Returns nothing when there is no valid stamp.
+/// Returns std::nullopt if there is no valid stamp.
 std::optional<RunStamp> read_stamp(const std::string& directory);
 void write_stamp(const std::string& directory, const RunStamp& stamp);
 

@@ -50,10 +50,12 @@ struct TeamSums {
     if (rms) checked(vehicle, "rms_m", *rms, std::numeric_limits<double>::max());
     if (mean) checked(vehicle, "nees_mean", *mean, std::numeric_limits<double>::max());
     if (share) checked(vehicle, "inside_95_share", *share, 1);
+    // Without one vehicle the figure of the team would look better than it is.
     if (!rms || !mean || !share || !(count > 0)) {
       whole = false;
       return;
     }
+    // Weighted by samples, so that the root of the sum is the rms of all estimates of the team.
     samples += count;
     squares += count * *rms * *rms;
     nees += count * *mean;
@@ -83,9 +85,9 @@ const std::vector<AlgorithmFigure>& algorithm_figures() {
   static const std::vector<AlgorithmFigure> figures{
       {"rms_m", "m", "rms of the horizontal error"},
       {"nees_mean", "1", "mean of the normalized error squared; 2 is consistent"},
-      {"inside_95_share", "1", "share of the estimates whose 95 % ellipse has the truth in it"},
+      {"inside_95_share", "1", "share of the estimates whose 95 % ellipse contains the truth"},
       {"ratio", "1", "rms over that of the bound"},
-      {"bytes_per_h", "B/h", "payload that a vehicle said"},
+      {"bytes_per_h", "B/h", "payload that a vehicle sent"},
       {time_of_event, "us", "CPU time of algorithm and driver for each report, packet and frame"}};
   return figures;
 }
@@ -167,6 +169,7 @@ std::vector<std::string> arguments_of_algorithms(const LoadedStudy& study, const
       algorithm_scoring(study.worlds[run.in_case].config, config.algorithms, config.algorithms_place);
   std::string names;
   for (const std::string& algorithm : config.algorithms) names += (names.empty() ? "" : ",") + algorithm;
+  // A separate process: an estimator that crashes fails its run, not the study.
   return {"shoal-nav",
           "--log",
           record_of(run),
@@ -195,6 +198,7 @@ void add_algorithm_figures(const LoadedStudy& study, StudyRun& run) {
       throw std::runtime_error(path + ": algorithm must be '" + algorithms[i] + "', got '" +
                                sim::shortened(sim::printable(entry.text("name"))) + "'");
     const std::string label = algorithm_label(algorithms[i]);
+    // An algorithm that cannot navigate this world has no figures; the run itself is fine.
     if (entry.has("left_out")) {
       for (const AlgorithmFigure& figure : algorithm_figures())
         run.record->metrics[label + "." + figure.name] = std::nullopt;

@@ -36,7 +36,7 @@ std::vector<std::string> figures_of_algorithms(const std::vector<std::string>& a
 struct ScoredVehicle {
   std::string vehicle, bound;  ///< `bound`: name of the metric
 };
-/// What is scored in a world.
+/// Vehicles and period that are scored in a world.
 struct AlgorithmScoring {
   std::vector<ScoredVehicle> vehicles;
   double from_s = 0;

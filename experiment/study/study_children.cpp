@@ -142,7 +142,7 @@ class StudyChildren {
       waiting_.push_back(what);
       return true;
     }
-    // It has finished since this process looked.
+    // The run has finished since this process looked.
     if (!options_.fresh && is_done(run)) {
       ++progress_.done;
       return true;
@@ -163,7 +163,7 @@ class StudyChildren {
     return true;
   }
 
-  // In its own process group: Ctrl-C is forwarded to it.
+  // The child has its own process group: Ctrl-C is forwarded to it.
   static pid_t spawn(const std::string& program, const std::vector<std::string>& arguments, const std::string& log) {
     pid_t pid = 0;
     const int error = start_child({program, arguments, own_environment(), log}, pid);
@@ -312,7 +312,7 @@ std::vector<std::string> arguments_of(const LoadedStudy& study, const StudyRun& 
   for (const std::string& set : sets_of(study, run)) add("--set", set);
   for (const std::string& path : allow_paths) add("--allow-path", path);
   if (config.duration_s) add("--duration", fmt::format("{}", *config.duration_s));
-  // Without programs no bus is used.
+  // A run without programs uses no bus.
   if (!config.launch) {
     add("--bus", "none");
     arguments.emplace_back("--no-serial-ports");  // they are not used, and two runs cannot share one

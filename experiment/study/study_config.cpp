@@ -102,7 +102,7 @@ std::string StudyConfig::world_text() const {
 void StudyConfig::read_worlds(sim::ParamReader& in) {
   std::string world;
   std::vector<std::string> worlds;
-  in.read("world", world, "world file, from the folder of this file, or the name of a shipped world");
+  in.read("world", world, "world file, relative to the folder of this file, or the name of a shipped world");
   in.read("worlds", worlds, "several world files instead, each of which is a case with the name of its file");
   if (in.describing()) return;
   if (in.has("world") && in.has("worlds")) in.error("worlds", "needs either 'world' or 'worlds', not both");

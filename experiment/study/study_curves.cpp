@@ -46,6 +46,7 @@ Curve read_error_curve(const std::string& path, const std::string& metric, const
                            sim::read_number((*fields)[error]).value_or(no_figure)};
     if (std::isfinite(point.x) && std::isfinite(point.error_m)) curve.push_back(point);
   }
+  // At rest many estimates have the same distance; they stay in the order of time.
   std::stable_sort(curve.begin(), curve.end(), [](const CurvePoint& a, const CurvePoint& b) { return a.x < b.x; });
   return curve;
 }

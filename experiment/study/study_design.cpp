@@ -40,6 +40,7 @@ std::vector<std::vector<double>> latin_shares(const StudyDesign& design, std::si
   std::vector<std::size_t> order(points);
   for (std::size_t k = 0; k < dimensions; ++k) {
     std::iota(order.begin(), order.end(), std::size_t{0});
+    // A random order for each factor (Fisher-Yates), so that each of its parts has one point.
     for (std::size_t i = points; i > 1; --i)
       std::swap(order[i - 1], order[random.integer_below(static_cast<std::uint32_t>(i))]);
     for (std::size_t i = 0; i < points; ++i)
@@ -163,6 +164,7 @@ std::vector<StudyPoint> design_points(const StudyDesign& design, const std::vect
   for (std::size_t number = 0; number < count; ++number) {
     StudyPoint& point = points.emplace_back();
     point.values.resize(factors.size());
+    // The last factor varies fastest, as in nested loops.
     std::size_t rest = number;
     for (std::size_t k = factors.size(); k-- > 0;) {
       const std::size_t levels = factors[k].grid_levels();

@@ -144,6 +144,7 @@ std::vector<std::string> study_plots(const StudyConfig& config) {
 }
 
 void check_outputs(const std::string& directory, const StudyConfig& config) {
+  // Checked before the first run: a study of hours must not fail at its last file.
   std::vector<std::string> names{"study.csv",    "points.csv",  "study.json",
                                  "study.sqlite", "report.html", "study.sqlite.part"};
   if (!config.plots.empty()) names.insert(names.end(), {"plot.gp", "plot.log"});

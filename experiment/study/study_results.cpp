@@ -263,7 +263,7 @@ std::string StudyResults::to_csv() const {
                         : *passed ? "1"
                                   : "0",
                         csv_field(record.ended), record.sim_time_s, record.wall_s, record.run_hash);
-    // Its figures.
+    // Figures of the run.
     for (const std::string& figure : figures_) {
       const auto found = record.metrics.find(figure);
       const bool known = found != record.metrics.end() && found->second;

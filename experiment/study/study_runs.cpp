@@ -53,6 +53,7 @@ void read_summary(StudyRun& run) {
   run.record.reset();
   try {
     RunRecord record = read_run(run.directory);
+    // 0 and 1 are results; other codes and runs ended by hand must be repeated.
     const bool done = record.exit_code == 0 || record.exit_code == 1;
     const bool by_hand = record.ended == "quit" || record.ended == "signal";
     if (done && !by_hand && record.ended != "process")
@@ -114,8 +115,9 @@ void read_result(const LoadedStudy& study, bool any_version, StudyRun& run) {
   run.tried = false;
   const std::string inputs = inputs_of(study, run);
   if (const auto stamp = read_stamp(run.directory)) {
+    // The hash of the inputs decides, not the time of the file.
     if (stamp->inputs != inputs)
-      run.failure = "its result is of other inputs: the study or its world has changed";
+      run.failure = "its result belongs to other inputs: the study or its world has changed";
     else if (!any_version && stamp->version != short_version())
       run.failure = "its result is of shoal " + stamp->version;
     else
@@ -142,6 +144,7 @@ void run_in_batches(const LoadedStudy& study, std::vector<StudyRun>& runs,
       const std::size_t at = position.at(runs[i].seed);
       if (at >= first && at < first + batch) which.push_back(i);
     }
+    // Seeds in batches, all cases and points of each: they are compared in pairs of equal seeds.
     execute(which);
     if (study.config.until && certain_after(study, runs, position, std::min(first + batch, seeds))) return;
   }
@@ -170,6 +173,7 @@ std::string until_text(const LoadedStudy& study, const std::vector<StudyRun>& ru
   const bool holds = until_holds(study, runs);
   std::string text = fmt::format("until: {} {} after {}", until.text, holds ? "holds" : "does not hold", seeds);
   if (used < until.planned_seeds) text += "; runs of the others are not used";
+  // With few seeds an interval is small by chance from time to time, and the study stops just then.
   if (holds && used < min_sure_batch)
     text += fmt::format("; with fewer than {} seeds this may be chance", min_sure_batch);
   return text;

@@ -82,6 +82,7 @@ void add_points(nlohmann::ordered_json& json, const StudyResults& results) {
         {{"name", factor.name}, {"paths", factor.paths}, {"log", factor.scale == StudyFactor::Scale::log}});
   json["points"] = nlohmann::ordered_json::array();
   const std::vector<StudyPoint>& points = results.study().points;
+  // A page that reads the JSON would not cope with more; points.csv has all.
   for (std::size_t point = 0; point < std::min(points.size(), max_points_in_json); ++point)
     for (std::size_t in_case = 0; in_case < config.cases.size(); ++in_case) {
       nlohmann::ordered_json entry{{"point", point + 1},
@@ -126,6 +127,7 @@ void add_convergence(nlohmann::ordered_json& json, const StudyResults& results) 
 std::vector<ExtremeRun> extreme_runs(const StudyResults& results) {
   std::vector<ExtremeRun> extremes;
   for (const std::string& figure : results.table_figures()) {
+    // Its extremes are 0 and 1.
     if (figure == passed_figure) continue;
     const StudyRun *min_run = nullptr, *max_run = nullptr;
     for (const StudyRun& run : results.runs()) {
@@ -134,6 +136,7 @@ std::vector<ExtremeRun> extreme_runs(const StudyResults& results) {
       if (min_run == nullptr || value < figure_of(*min_run, figure)) min_run = &run;
       if (max_run == nullptr || value > figure_of(*max_run, figure)) max_run = &run;
     }
+    // A figure that is the same in all runs has no extreme.
     if (min_run == nullptr || figure_of(*min_run, figure) == figure_of(*max_run, figure)) continue;
     extremes.push_back({figure, true, max_run});
     extremes.push_back({figure, false, min_run});

@@ -31,7 +31,7 @@ void add_points(nlohmann::ordered_json& json, const StudyResults& results);
 
 /// Adds `convergence`: mean and interval of the first figures over the number of seeds, by case.
 void add_convergence(nlohmann::ordered_json& json, const StudyResults& results);
-/// Run with the greatest or smallest value of a figure.
+/// Run with the largest or smallest value of a figure.
 struct ExtremeRun {
   std::string figure;
   bool max = false;
@@ -42,7 +42,7 @@ std::vector<ExtremeRun> extreme_runs(const StudyResults& results);
 /// Returns the folder, in that of the study, of a run that is shown: executed again with a record and its page.
 std::string shown_folder(const StudyRun& run);
 
-/// Adds `extremes`: of each figure of the table the runs with the greatest and the smallest value, and how to see them.
+/// Adds `extremes`: of each figure of the table the runs with the largest and the smallest value, and how to view them.
 void add_extremes(nlohmann::ordered_json& json, const StudyResults& results);
 
 std::string comparisons_text(const std::vector<StudyComparison>& comparisons);

@@ -63,7 +63,7 @@ std::optional<StudyUntil> read_until(sim::ParamReader& in, const std::vector<std
   std::string text;
   std::int64_t batch = 10;
   in.read("until", text,
-          "ends the study when half of the 95 % interval of a mean is small in every case and at every point: "
+          "ends the study when half the 95 % interval of a mean is small in every case and at every point: "
           "ci(METRIC.FIGURE) < 5 %, or < 0.1 in its unit");
   in.read("batch", batch, sim::between(2, 10000), "seeds after which `until` is evaluated");
   if (in.describing() || !in.has("until")) {

@@ -8,7 +8,7 @@
 
 namespace experiment {
 
-/// What happened to a key.
+/// Event of a key.
 struct KeyEvent {
   enum class Action { press, repeat, release };
   std::string key;  ///< character, or space, tab, enter, backspace, escape, up, down, left, right

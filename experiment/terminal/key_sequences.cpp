@@ -11,6 +11,7 @@ constexpr char escape_key = 27;
 
 std::string KeySequences::next(char byte, Clock::time_point now) {
   const auto piece = parser_.next(byte);
+  // The Escape key and the start of a sequence are distinguished by the time until the next byte.
   if (parser_.is_at_escape()) begun_ = now;
   if (!piece) return {};
   switch (piece->kind) {

@@ -22,7 +22,7 @@ class Progress {
   void report(const std::string& text);
   /// Shows a question in place of the live line until the next line is printed.
   void send_request(const std::string& text);
-  /// To be called after a rewind.
+  /// Call after a rewind.
   void restart(sim::Time now);
 
  private:

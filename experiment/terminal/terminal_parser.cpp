@@ -17,6 +17,7 @@ std::optional<TerminalPiece> TerminalParser::next(char byte) {
   if (byte == escape_of_terminal) {
     state_ = State::escape;
     parameters_.clear();
+    // The first of two escapes was the Escape key.
     if (before == State::escape) return TerminalPiece{TerminalPiece::Kind::escape, byte, {}};
     return std::nullopt;
   }
@@ -25,10 +26,12 @@ std::optional<TerminalPiece> TerminalParser::next(char byte) {
       return TerminalPiece{TerminalPiece::Kind::character, byte, {}};
     case State::escape:
       if (byte == '[') state_ = State::first_parameter;
+      // Keys in application mode (SS3) have one byte after ESC O.
       if (byte == 'O') state_ = State::last;
       if (state_ == State::none) return TerminalPiece{TerminalPiece::Kind::escaped, byte, {}};
       return std::nullopt;
     case State::first_parameter:
+      // The Linux console sends ESC [ [ A for F1.
       if (byte == '[') {
         parameters_ += byte;
         state_ = State::last;

@@ -55,7 +55,7 @@ std::vector<ShippedFile> named_files(ShippedKind kind) {
   return files;
 }
 
-/// What to do about a name of which there is no file of the right kind.
+/// Advice for a name without a file of the right kind.
 std::string advice(const std::string& name, const std::string& meant, const std::string& lists) {
   for (const ShippedKind kind : {ShippedKind::world, ShippedKind::vehicle, ShippedKind::study})
     for (const ShippedFile& file : named_files(kind))
@@ -74,6 +74,7 @@ std::string advice(const std::string& name, const std::string& meant, const std:
   }
   const std::string name = sim::shortened(sim::printable(given));
   const std::string stem = fs::path(given).stem().string();
+  // The ending is added only to a name without one.
   const std::string file = fs::path(given).has_extension() ? "" : ", nor '" + name + ending + "'";
   sim::throw_config_error({}, "'" + name + "'",
                           "there is no such file here" + file + ", nor a shipped " + what + " of this name; " +

@@ -78,6 +78,7 @@ class Parser {
     token_ = Token{"", line_, column_};
     if (at_ >= text_.size()) return;
     const std::size_t start = at_;
+    // Numbers are words, too, with their signs and exponents.
     if (is_word(text_[at_]) || text_[at_] == '-' || text_[at_] == '+') {
       do step();
       while (at_ < text_.size() && (is_word(text_[at_]) || is_exponent_sign()));
@@ -109,6 +110,7 @@ class Parser {
         const std::size_t start = at_;
         const int line = line_;
         while (at_ < text_.size() && text_[at_] != '\n') step();
+        // The comment above a declaration becomes its description in the documentation.
         comments_[line] = trimmed(text_.substr(start, at_ - start));
       } else if (text_.substr(at_, 2) == "/*") {
         while (at_ < text_.size() && text_.substr(at_, 2) != "*/") step();
@@ -190,6 +192,7 @@ class Parser {
     }
     advance();
     if (token_.text == ";") advance();
+    // On the wire an enum of LCM is a struct with one int32.
     Member value;
     value.name = "value";
     value.type_name = "int32_t";
@@ -204,6 +207,7 @@ class Parser {
     while (true) {
       const std::string name = word("the name of the constant");
       expect("=");
+      // Only whole numbers can be sizes of arrays; others are read over.
       if (const auto value = integer(token_.text)) constants[name] = *value;
       if (token_.text.empty() || token_.text == ";" || token_.text == "}") fail("expected a value");
       advance();

@@ -19,6 +19,7 @@ std::uint64_t hash_string(std::uint64_t v, std::string_view s) {
 }
 
 std::uint64_t members_hash(const MessageSchema& schema) {
+  // As in lcmgen.c, so that fingerprints are those of lcm-gen: an enum counts by its name alone.
   if (schema.is_enum) return hash_string(0x87654321, schema.name.substr(schema.name.rfind('.') + 1));
   std::uint64_t v = 0x12345678;
   for (const Member& member : schema.members) {
@@ -56,6 +57,7 @@ std::size_t compute_min_size(const MessageSchema& schema, std::vector<const Mess
     std::size_t element =
         member.compound != nullptr ? compute_min_size(*member.compound, parents) : wire_size(member.type);
     for (const Dimension& dimension : member.dimensions)
+      // A crafted type could have any size; the product must not wrap around.
       if (__builtin_mul_overflow(element, static_cast<std::size_t>(dimension.constant), &element))
         throw MessageError("type " + schema.name + ": member '" + member.name + "' is too large");
     size += element;
@@ -113,6 +115,7 @@ void MessageTypes::resolve() {
         throw MessageError("type " + name + ": member '" + member.name + "' has the unknown type " + member.type_name);
     }
   std::vector<const MessageSchema*> parents;
+  // Sizes first: a type that contains itself is refused before its fingerprint, which would not end.
   for (auto& [name, schema] : by_name_) schema.min_size = compute_min_size(schema, parents);
   for (auto& [name, schema] : by_name_) {
     schema.fingerprint = compute_fingerprint(schema, parents);

@@ -96,7 +96,7 @@ class Walker {
       const std::int64_t size =
           dimension.is_variable() ? lengths[static_cast<std::size_t>(dimension.length_slot)] : dimension.constant;
       if (size < 0)
-        return fail(member.name, "has the negative size " + std::to_string(size) + " ('" + dimension.text + "')");
+        return fail(member.name, "has a negative size, " + std::to_string(size) + " ('" + dimension.text + "')");
       if (size == 0) empty = true;
       if (__builtin_mul_overflow(count, static_cast<std::uint64_t>(size), &count) || count > (1ull << 58))
         return fail(member.name, "is too large ('" + dimension.text + "' is " + std::to_string(size) + ")");
@@ -137,6 +137,7 @@ class Walker {
     for (std::uint64_t i = 0; i < count; ++i) {
       if (remaining() < 4) return fail_short(element_name(member, lengths, i), 4);
       const auto length = static_cast<std::int32_t>(big_endian<std::uint32_t>(at_));
+      // The length counts the final NUL, so that even an empty string has 1.
       if (length < 1)
         return fail(element_name(member, lengths, i),
                     "has the string length " + std::to_string(length) + ", must be >= 1");
@@ -161,6 +162,7 @@ class Walker {
   }
 
   void show_primitives(const Member& member, const Lengths& lengths, std::uint64_t count, std::size_t size) {
+    // Bytes are shown as a block: they are images and payloads of modems.
     if (member.type == WireType::byte && member.dimensions.size() == 1) {
       show(member.name, std::span(at_, static_cast<std::size_t>(count)));
       return;

@@ -34,6 +34,7 @@ struct AsBefore {
 };
 
 bool nan_means_as_before(const MessageSchema& schema, const Member& member) {
+  // Zero in these members would be a command (drive to 0, dive to 0); YAML that leaves them out means 'as before'.
   static const std::vector<AsBefore> table{
       {"shoal.helm_command_t", {"speed_mps", "heading_rad", "depth_m", "altitude_m"}},
       {"shoal.station_command_t", {"x_m", "y_m", "depth_m", "heading_rad"}},
@@ -67,6 +68,7 @@ class Writer {
     const std::vector<std::int64_t> lengths = lengths_of(schema, value, who);
     for (const Member& member : schema.members) {
       const ConfigNode* given = value.find(member.name);
+      // The length follows from its array and need not be written.
       if (member.length_slot >= 0)
         write_length(member, lengths[static_cast<std::size_t>(member.length_slot)], given, who);
       else
@@ -143,6 +145,7 @@ class Writer {
     const std::int64_t size =
         dimension.is_variable() ? spot.lengths[static_cast<std::size_t>(dimension.length_slot)] : dimension.constant;
     const bool last = spot.dimension == member.dimensions.size();
+    // Payloads of modems are bytes, and people write them as text.
     if (last && member.type == WireType::byte && value.kind == Kind::scalar) return write_text_bytes(value, size, spot);
     const auto given = static_cast<std::int64_t>(value.items.size());
     if (value.kind != Kind::null && (value.kind != Kind::list || given != size)) {

@@ -23,7 +23,7 @@ namespace {
 constexpr double max_play_s = 120;
 constexpr double min_connection_s = 0.5;
 constexpr double slower_factor = 3;
-/// It stands still when it moves less than this in `still_s`.
+/// A vehicle stands still when it moves less than this in `still_s`.
 constexpr double still_s = 0.2, still_m = 0.005, still_rad = 2 * std::numbers::pi / 180;
 /// Range of the search: room of the pose on the route beyond the ends, and shares of the straight connection's time.
 constexpr double via_room = 0.4, least_time_share = 0.25, greatest_time_share = 4;
@@ -144,6 +144,7 @@ Arrival ConnectWorld::play(const sim::JointMotion& motion, bool may_touch, const
     if (const auto position = impl_->position_of(track.joint))
       arrival.error = std::max(arrival.error, std::abs(*position - track.keys.back().value));
   arrival.arrived = still && arrival.error <= options.arrive_rad;
+  // The search needs a value for failures, too: later falls and smaller errors are better.
   if (arrival.arrived)
     arrival.value = 1;
   else if (arrival.fell)
@@ -165,6 +166,7 @@ Connector::Connector(const sim::WorldConfig& world, const std::string& vehicle, 
     if (one->stands())
       worlds_.push_back(std::move(one));
     else if (w == 0)
+      // The world as it is must work; a perturbed one in which the vehicle does not stand says nothing about motions.
       throw sim::ConfigError({"vehicle '" + vehicle + "' does not stand still at the end of '" + start.name + "'"});
     else
       left_out_.push_back(w);

@@ -16,8 +16,8 @@ namespace motion {
 
 /// How a connection of two poses is searched.
 struct ConnectOptions {
-  int candidates = 300;  ///< at most, of the search; those of before it are not counted
-  int worlds = 4;        ///< perturbed ones, besides the world as it is
+  int candidates = 300;  ///< limit of the search; earlier candidates are not counted
+  int worlds = 4;        ///< perturbed ones, in addition to the unperturbed world
   double velocity = 1;   ///< mean one of the joint that moves furthest on the straight connection, rad/s or m/s
   double settle_s = 1;   ///< time after each motion in which the vehicle may still fall
   double arrive_rad = 2 * std::numbers::pi / 180;  ///< greatest difference of a joint from its end, rad; of a slider m
@@ -66,7 +66,7 @@ enum class ConnectionKind { straight, slower, by_stance, searched, none };
 /// Motion that connects two poses.
 struct Connection {
   ConnectionKind kind = ConnectionKind::none;
-  sim::JointMotion motion;            ///< the best one, also when none arrives
+  sim::JointMotion motion;            ///< the best one, even when none arrives
   double value = -2;                  ///< of its worst world
   std::vector<Arrival> straight;      ///< of the straight connection, by world: the world as it is first
   std::vector<Arrival> arrivals;      ///< of the best motion
@@ -76,9 +76,9 @@ struct Connection {
 
 /// Search for a motion from one pose to another, without a fall in the world as it is and in perturbed ones.
 ///
-/// In this order: straight from pose to pose; the same slower; by the stance at the start of the run; and a search by
-/// CMA-ES for a pose on the route and the times before and after it.  The first motion that arrives in all worlds is
-/// the result.  It does not depend on the number of threads.
+/// Tries, in this order: straight from pose to pose; the same slower; by the stance at the start of the run; and a
+/// search by CMA-ES for a pose on the route and the times before and after it.  The first motion that arrives in all
+/// worlds is the result.  It does not depend on the number of threads.
 class Connector {
  public:
   /// `start`: motion at whose end the connection starts; it may be a pose, held.  Throws ConfigError when the vehicle
@@ -104,7 +104,7 @@ class Connector {
   std::vector<std::size_t> left_out_;
   std::vector<std::string> start_joints_;
   sim::ThreadPool pool_;
-  // Of the present search.
+  // State of the present search.
   sim::JointValues from_, to_;  ///< with the same joints
   bool may_touch_ = false;
   int played_ = 0;

@@ -62,7 +62,7 @@ class ComparedModel {
   static const devices::MotionPlayer& player_of(const sim::Vehicle& vehicle) {
     for (const sim::MountedDevice* device : vehicle.devices())
       if (const auto* player = dynamic_cast<const devices::MotionPlayer*>(device->sensor())) return *player;
-    throw std::logic_error("a vehicle without a motion_player is compared");
+    throw std::logic_error("only vehicles with a motion_player can be compared");
   }
 
   double now_s() const { return sim::to_seconds(world_.now()); }

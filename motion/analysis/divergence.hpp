@@ -14,7 +14,7 @@ struct DivergenceOptions {
   double duration_s = 30;  ///< from the start of the motion, after its approach; it is repeated
   double row_s = 0.1;      ///< time between two rows
   double mass = 0.1;       ///< share by which the masses are higher and lower
-  double effort = 0.2;     ///< share by which the greatest efforts of the servos are lower
+  double effort = 0.2;     ///< fraction by which the maximum efforts of the servos are reduced
   double friction = 0.2;   ///< by which the friction of the contacts is higher and lower
   int threads = 0;         ///< 0: one for each processor
 };
@@ -35,10 +35,10 @@ struct Divergence {
 
   /// Returns the number of rows.
   std::size_t rows() const { return curves.front().distance_m.size(); }
-  /// Returns the greatest and the median distance over the models at a row, m.
+  /// Returns the largest and the median distance over the models at a row, m.
   double greatest_m(std::size_t row) const;
   double median_m(std::size_t row) const;
-  /// Returns the greatest distance over the models and all rows up to one, m.
+  /// Returns the largest distance over the models and all rows up to one, m.
   double greatest_until_m(std::size_t row) const;
 };
 

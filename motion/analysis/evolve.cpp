@@ -107,6 +107,7 @@ void Evolution::choose_first_world(const std::vector<Candidate>& candidates) {
   for (const Candidate& candidate : candidates) {
     if (!candidate.is_complete()) continue;
     for (std::size_t w = 0; w < worlds_.size(); ++w)
+      // The world in which most candidates do worst goes first, since it rules out most of them after a single walk.
       if (candidate.walks[w]->value_mps == candidate.value_mps) {
         ++worst[w];
         break;

@@ -23,7 +23,7 @@ struct EvolveOptions {
   int candidates = 500;  ///< at most; whole generations are tried
   int population = 16;   ///< candidates of a generation
   int worlds = 8;        ///< perturbed ones; 0: only the world as it is
-  double sigma = 0.3;    ///< first standard deviation, as a share of the range of each number
+  double sigma = 0.3;    ///< initial standard deviation, as a fraction of the range of each number
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0: one for each processor
   WalkOptions walk;

@@ -13,7 +13,7 @@ struct EvolveGeneration {
   double of_generation_mps = 0;  ///< of the best of this generation
 };
 
-/// What the page of a search shows.
+/// Contents of the page of a search.
 struct EvolveReport {
   std::string title;
   std::vector<std::vector<std::string>> facts;  ///< name and value

@@ -60,6 +60,8 @@ void FreeKeys::add_values() {
                                 "', which is not a servo of vehicle '" + vehicle_.vehicle + "'"});
       const auto [at_first, is_first] = first.try_emplace(joint, Value{k, j});
       const Value& one = at_first->second;
+      // The last key of a loop repeats the first. It follows that one instead of being searched, else the loop would
+      // jump.
       if (!is_first && last_key[joint] == k &&
           std::abs(motion_.keys[one.key].joints[one.joint].second - value) < seam_tolerance) {
         equal_.emplace_back(one, Value{k, j});

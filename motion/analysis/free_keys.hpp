@@ -15,7 +15,7 @@ class FreeKeys final : public GaitFamily {
   /// not.
   FreeKeys(sim::JointMotion motion, const sim::VehicleConfig& vehicle);
   const std::vector<GaitNumber>& numbers() const override { return numbers_; }
-  /// As mended() makes it: where a servo would be too slow, the keys are further apart.
+  /// The motion after mended(): where a servo would be too slow, the keys are further apart.
   sim::JointMotion motion(std::span<const double> values) const override;
 
  private:

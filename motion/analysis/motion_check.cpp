@@ -104,6 +104,7 @@ void check_track(const sim::MotionTrack& frames, const Limits& limits, double fr
     high.add(at_s, value, limits.high, value - limits.high);
     if (i == 0) continue;
     const double per_s = (value - frames.keys[i - 1].value) / frame_s;
+    // Rounding of set points must not break a limit.
     velocity.add(at_s, per_s, limits.velocity, std::abs(per_s) - limits.velocity * (1 + 1e-6));
     const double per_s2 = (per_s - velocity_before) / frame_s;
     acceleration.add(at_s, per_s2, limits.acceleration, std::abs(per_s2) - limits.acceleration * (1 + 1e-6));
@@ -120,6 +121,7 @@ void check_two_joints(const std::vector<sim::MotionTrack>& frames, const std::ve
     low.emplace_back(MotionRule::two_joint_low, servos.name(i), findings);
     high.emplace_back(MotionRule::two_joint_high, servos.name(i), findings);
   }
+  // A limit may depend on a joint that the motion does not move, which stays at rest.
   std::vector<double> positions;
   for (std::size_t i = 0; i < servos.size(); ++i) positions.push_back(servos.at_rest(i));
   for (std::size_t frame = 0; frame < frames.front().keys.size(); ++frame) {

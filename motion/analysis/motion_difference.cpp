@@ -72,6 +72,7 @@ std::vector<CoursePoint> course_of(const StageOptions& options, const sim::Joint
   MotionStage stage(without_return, once);
   std::vector<CoursePoint> course;
   stage.after_step = [&](MotionStage& now) {
+    // The approach depends on where the vehicle stood, not on the motion.
     if (now.player().phase() == devices::MotionPlayer::Phase::approach) return;
     course.push_back({now.player().at_s(), now.vehicle().X_WV()});
   };

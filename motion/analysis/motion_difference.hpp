@@ -11,7 +11,7 @@
 
 namespace motion {
 
-/// How the values of a joint differ between two motions, at the frames of the first one: rad, or m of a slider.
+/// How the values of a joint differ between two motions, at the frames of the first one: rad, or m for a slider.
 struct JointDifference {
   std::string joint;
   double max = 0, max_at_s = 0, rms = 0;

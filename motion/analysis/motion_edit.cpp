@@ -235,7 +235,7 @@ JointMotion trimmed(const JointMotion& motion, double from_s, double to_s) {
   check_part(motion, from_s, to_s);
   JointMotion left =
       with_tracks(motion, part(motion, from_s, to_s), [=](double t_s) { return t_s <= to_s ? t_s - from_s : -1; });
-  // What changed before the part is so at its start.
+  // Changes before the part take effect at its start.
   std::erase_if(left.changes, [=](const sim::MotionChange& change) { return change.at_s > to_s; });
   for (sim::MotionChange& change : left.changes) change.at_s = std::max(0.0, change.at_s - from_s);
   move_sounds(left, [=](double at_s) { return at_s >= from_s && at_s <= to_s ? at_s - from_s : -1; });
@@ -254,6 +254,7 @@ JointMotion without(const JointMotion& motion, double from_s, double to_s) {
   JointMotion left = with_tracks(motion, std::move(tracks), [=](double t_s) {
     return t_s < from_s ? t_s : t_s >= to_s ? t_s - to_s + from_s : -1;
   });
+  // What happened in the part that was cut out stays: otherwise the world would be a different one afterwards.
   for (sim::MotionChange& change : left.changes)
     change.at_s = change.at_s < to_s ? std::min(change.at_s, from_s) : change.at_s - to_s + from_s;
   move_sounds(left, [=](double at_s) { return at_s < from_s ? at_s : at_s < to_s ? -1 : at_s - to_s + from_s; });
@@ -362,6 +363,7 @@ JointMotion shifted(const JointMotion& motion, double by_s, const std::vector<st
   JointMotion moved =
       with_tracks(motion, std::move(tracks), [=](double t_s) { return joints.empty() ? t_s + by_s : t_s; });
   if (!joints.empty()) return moved;
+  // What happened before the new start now happens at the start.
   for (sim::MotionChange& change : moved.changes) change.at_s = std::max(0.0, change.at_s + by_s);
   move_sounds(moved, [=](double t_s) { return std::max(0.0, t_s + by_s); });
   return moved;
@@ -385,6 +387,7 @@ JointMotion retimed(const JointMotion& motion, double at_s, double to_s) {
   if (key == changed.keys.end()) throw EditError("no key is at " + sim::number_text(at_s) + " s");
   const double after_s = key == changed.keys.begin() ? -1 : std::prev(key)->at_s;
   const bool is_last = std::next(key) == changed.keys.end();
+  // Passing a neighbor would change the order of keys, and with it the path of every joint.
   if (to_s < 0 || to_s <= after_s || (!is_last && to_s >= std::next(key)->at_s))
     throw EditError("a key stays between its neighbors, at " + sim::number_text(std::max(after_s, 0.0)) + " s" +
                     (is_last ? "" : " and " + sim::number_text(std::next(key)->at_s) + " s") + ", got " +
@@ -423,6 +426,7 @@ JointMotion simplified(const JointMotion& motion, double tolerance) {
   std::vector<MotionTrack> tracks = motion.tracks();
   for (MotionTrack& track : tracks) {
     const auto is_curved = [](const TrackKey& key) { return key.ease != Easing::linear; };
+    // Easing already describes a path with few keys.
     if (track.keys.size() < 3 || std::any_of(track.keys.begin() + 1, track.keys.end(), is_curved)) continue;
     std::vector<bool> kept(track.keys.size(), false);
     kept.front() = kept.back() = true;
@@ -443,6 +447,7 @@ JointMotion with_values(const JointMotion& motion, double at_s, const sim::Joint
     const std::string& name = joint;
     auto track = std::find_if(tracks.begin(), tracks.end(), [&](const auto& one) { return one.joint == name; });
     if (track == tracks.end()) track = tracks.insert(tracks.end(), {name, {}});
+    // Times of keys are compared with a tolerance, since they went through decimal text.
     const auto key = std::find_if(track->keys.begin(), track->keys.end(),
                                   [&](const TrackKey& one) { return one.at_s > at_s - same_time_s; });
     if (key != track->keys.end() && key->at_s < at_s + same_time_s)

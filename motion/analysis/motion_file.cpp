@@ -29,7 +29,7 @@ std::string frames_path(const std::string& path) {
   return fs::path(path).replace_extension(".csv").string();
 }
 
-/// Returns whether the motion file names the CSV file beside it, also when the motion file has mistakes.
+/// Returns whether the motion file names the CSV file beside it, even when the motion file has mistakes.
 bool has_frames(const std::string& path) {
   const std::string frames = fs::path(frames_path(path)).filename().string();
   std::ifstream file(path, std::ios::binary);
@@ -214,6 +214,7 @@ std::string MotionHistory::move(const std::string& from, const std::string& to) 
   std::string operation;
   std::ifstream file(operation_of(found.back()));
   std::getline(file, operation);
+  // The present version is stored first, so that no failure loses one.
   const Version kept = store(path_, folder(), to, operation);
   try {
     if (foreign.empty()) copy_over(frames, frames_path(path_));
@@ -229,7 +230,7 @@ std::string MotionHistory::move(const std::string& from, const std::string& to) 
 sim::JointMotion MotionHistory::previous() const {
   const std::vector<Version> found = versions(folder(), "undo");
   if (found.empty()) throw std::runtime_error("'" + path_ + "' has no earlier version");
-  // It names its frames as they are named beside the file.
+  // The motion names its frames as they are named beside the file.
   const experiment::ScratchDirectory scratch;
   const fs::path file = scratch.path / fs::path(path_).filename();
   copy_over(found.back().file, file);

@@ -150,7 +150,7 @@ double MotionStage::now_s() const {
 
 double MotionStage::time_of(double motion_s) const {
   if (started_s_) return *started_s_ + motion_s / player().rate();
-  // Before the start, its time in the motion is what is left of the approach.
+  // Before the start, the time of the player is the rest of the approach, negative.
   return (motion_s - player().from_s()) / player().rate() - player().at_s() + now_s();
 }
 

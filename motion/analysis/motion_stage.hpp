@@ -62,7 +62,7 @@ class MotionStage {
 
   /// Loads the world and puts the motion first into its player.  Throws ConfigError.
   MotionStage(const StageOptions& options, const sim::JointMotion& motion);
-  /// As above, for a motion that depends on the vehicle before the first step.
+  /// The same for a motion that depends on the vehicle before the first step.
   MotionStage(const StageOptions& options, const std::function<sim::JointMotion(MotionStage&)>& make_motion);
   ~MotionStage();
 

@@ -28,6 +28,7 @@ bool first_body_touches(const sim::World& world, const sim::Vehicle& vehicle) {
   for (const sim::ContactReport& contact : world.physics().contacts()) {
     const sim::PartInfo& a = parts[static_cast<std::size_t>(contact.parts[0])];
     const sim::PartInfo& b = parts[static_cast<std::size_t>(contact.parts[1])];
+    // Parts of the own vehicle may touch each other.
     if ((a.body == base.number() && b.group != vehicle.group()) ||
         (b.body == base.number() && a.group != vehicle.group()))
       return true;
@@ -43,6 +44,7 @@ void MotionTracking::add(MotionStage& stage) {
     if (servo == nullptr) continue;
     if (number == servos_.size()) servos_.push_back({device->config().name, servo->alias()});
     Servo& sums = servos_[number++];
+    // Without the play of the gear: the joint itself, not the motor.
     const double error = std::abs(servo->set_point().position - servo->joint_position());
     sums.greatest = std::max(sums.greatest, error);
     sums.sum2 += error * error;

@@ -24,7 +24,7 @@ class MotionTracking {
  public:
   /// Adds the present step.
   void add(MotionStage& stage);
-  /// Returns a table: for each servo the greatest and the rms difference of set point and joint, deg.  The joints of
+  /// Returns a table: for each servo the maximum and the rms difference of set point and joint, deg.  The joints of
   /// the motion come first; of the others those that are never off by 0.0005 deg are one line.
   std::string text(const sim::JointMotion& motion) const;
   /// Returns whether the vehicle has fallen meanwhile.

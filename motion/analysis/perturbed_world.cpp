@@ -129,6 +129,7 @@ sim::WorldConfig world_for_walks(const sim::WorldConfig& world) {
   sim::WorldConfig reduced = world;
   for (sim::VehicleInstance& instance : reduced.vehicles) {
     sim::VehicleConfig vehicle = *instance.config;
+    // Sensors cost most of a step, and no motion depends on them.
     std::erase_if(vehicle.devices, [](const sim::DeviceConfig& device) {
       return params_of<devices::JointServo::Params>(device) == nullptr &&
              params_of<devices::JointGroup::Params>(device) == nullptr &&
@@ -158,13 +159,16 @@ sim::WorldConfig perturbed(sim::WorldConfig world, const std::string& vehicle, c
       servo.max_effort *= perturbation.effort;
       if (servo.gear.line.stall_effort) *servo.gear.line.stall_effort *= perturbation.effort;
       if (servo.control == devices::JointServo::Control::velocity && servo.kp > 0)
+        // The gain of a velocity servo is the inverse of its time constant, so a lag adds to 1 / kp.
         servo.kp = 1 / (1 / servo.kp + perturbation.lag_s);
       set_params(device, servo);
     }
   if (perturbation.ground_m > 0) {
     add_bumps(world, instance, perturbation);
+    // Above the highest bump, or the vehicle would start inside the ground.
     instance.X_WV.translation().z() += perturbation.ground_m;
   }
+  // Steps are whole microseconds.
   if (perturbation.half_step) world.physics.step_s = std::round(world.physics.step_s * 1e6 / 2) / 1e6;
   instance.config = std::make_shared<const sim::VehicleConfig>(std::move(changed));
   return world;

@@ -15,7 +15,7 @@ namespace motion {
 struct Perturbation {
   std::optional<double> friction;  ///< of the contacts of the vehicle; unset: as in the file
   double mass = 1;                 ///< factor of the masses of the vehicle
-  double effort = 1;               ///< factor of the greatest efforts of its servos
+  double effort = 1;               ///< factor of the maximum efforts of its servos
   double lag_s = 0;                ///< by which the time constant 1/kp of its servos is longer
   double ground_m = 0;             ///< bumps of the ground, up and down
   bool half_step = false;

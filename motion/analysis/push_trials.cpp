@@ -146,6 +146,7 @@ std::vector<PushOutcome> outcomes_of(MotionStage& stage, const std::vector<Push>
     stage.go_to(push.at_s);
     snapshots.push_back(stage.world().state().snapshot());
   }
+  // Each thread has its own world, which continues from the snapshots.
   PushWorlds worlds(stage);
   std::vector<PushOutcome> outcomes(pushes.size());
   sim::ThreadPool(options.threads).for_each(pushes.size(), [&](std::size_t i) {
@@ -272,6 +273,7 @@ WeakestPush weakest_push(MotionStage& stage, const std::vector<double>& instants
     falls_at = std::move(first);
     fell = withstood;
     withstood = 0;
+    // Bisection, only with the pushes that made it fall at the larger impulse: the others withstand smaller ones.
     while (fell - withstood > options.resolution_mps) {
       const double middle = (withstood + fell) / 2;
       std::vector<std::size_t> found = falling(falls_at, middle);

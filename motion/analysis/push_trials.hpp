@@ -21,7 +21,7 @@ struct PushOptions {
 /// Pushes that a vehicle withstands at an instant, while its motion continues.
 struct PushMargin {
   double at_s = 0;                    ///< time of the run
-  std::vector<double> withstood_mps;  ///< by direction: greatest impulse over mass that does not make it fall
+  std::vector<double> withstood_mps;  ///< by direction: largest impulse per mass that it withstands
   double mass_kg = 0;
   double settle_m =
       0;  ///< greatest distance from where it is without a push, over pushes of settle_mps in all directions
@@ -39,7 +39,7 @@ struct Push {
   double mps = 0;            ///< impulse over the mass of the vehicle
 };
 
-/// What a push does.
+/// Effect of a push.
 struct PushOutcome {
   bool fell = false;
   sim::Vector3d end_W = sim::Vector3d::Zero();  ///< position of the first body at the end, m
@@ -54,24 +54,25 @@ std::vector<PushOutcome> outcomes_of(MotionStage& stage, const std::vector<Push>
 /// Pushes copies of the world at each instant, which must increase.  The world of the stage is at the last instant
 /// afterwards, and as it would be without the pushes.  Results do not depend on the number of threads.
 ///
-/// It has fallen when its first body tilts by more than 45 degrees, or touches something that it did not touch before.
+/// A vehicle has fallen when its first body tilts by more than 45 degrees, or touches something that it did not touch
+/// before.
 std::vector<PushMargin> push_margins(MotionStage& stage, const std::vector<double>& instants_s,
                                      const PushOptions& options);
 
 /// The weakest instant and direction of a motion.
 struct WeakestPush {
   bool falls = false;        ///< without a push; the rest is then that instant
-  bool is_beyond = false;    ///< it withstands the greatest push everywhere
+  bool is_beyond = false;    ///< it withstands the largest push everywhere
   double withstood_mps = 0;  ///< greatest impulse over mass that it withstands at all instants in all directions
   double at_s = 0;           ///< time of the run
   double direction_rad = 0;  ///< counter-clockwise from ahead
   double mass_kg = 0;
 };
 
-/// Returns the least margin over all instants and directions, with a small part of the pushes of push_margins(): only
-/// the pushes that made it fall are repeated with weaker ones, and a push ends when the vehicle moves again as it does
-/// without one.  Instants and results as in push_margins(); the world of the stage ends later, when the last push may
-/// make it fall.
+/// Returns the smallest margin over all instants and directions, with a small part of the pushes of push_margins():
+/// only the pushes that made it fall are repeated with weaker ones, and a push ends when the vehicle moves again as it
+/// does without one.  Instants and results as in push_margins(); the world of the stage ends later, when the last push
+/// may make it fall.
 WeakestPush weakest_push(MotionStage& stage, const std::vector<double>& instants_s, const PushOptions& options);
 
 }  // namespace motion

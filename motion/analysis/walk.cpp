@@ -33,7 +33,7 @@ std::mutex& building() {
 const devices::MotionPlayer& player_of(const sim::Vehicle& vehicle) {
   for (const sim::MountedDevice* device : vehicle.devices())
     if (const auto* player = dynamic_cast<const devices::MotionPlayer*>(device->sensor())) return *player;
-  throw std::logic_error("a vehicle without a motion_player walks");
+  throw std::logic_error("only a vehicle with a motion_player can walk");
 }
 
 double yaw_of(const sim::Vehicle& vehicle) {

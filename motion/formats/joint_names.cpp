@@ -17,6 +17,7 @@ void JointNameList::read(sim::ParamReader& in) {
   in.require("joints");
   sim::ConfigNode map;
   in.read_raw("joints", map, "joint of the vehicle: its name in these files");
+  // Names are translated in both directions, so two joints must not share one.
   std::set<std::string> foreign;
   for (const sim::ConfigNode::Entry& entry : map.entries) {
     const std::string& name = entry.value.scalar;
@@ -70,6 +71,7 @@ const JointNameList* JointNames::find_list(const std::string& list) const {
 
 std::optional<std::string> JointNames::foreign_name(const std::string& list, bool uses_aliases,
                                                     const std::string& joint) const {
+  // Without a vehicle names stay as they are.
   if (empty()) return joint;
   const NamedJoint* const found = find(joint);
   if (found == nullptr) {

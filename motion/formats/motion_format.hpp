@@ -12,7 +12,7 @@
 
 namespace motion {
 
-/// What a file does not keep of a motion, or a motion of a file: one sentence each.
+/// Losses of a conversion between a motion and a file: one sentence each.
 using Losses = std::vector<std::string>;
 
 enum class SkillKind { posture, gait, behavior };
@@ -23,7 +23,7 @@ struct FormatOptions {
   double loop_step_s = 0;          ///< control step of a player of loops; 0: the file has one cycle
   std::optional<double> at_s;      ///< instant of a posture; unset: the only one
   std::string creator = "Shoal";   ///< of an MTN file
-  std::string design;              ///< design label of an MTN file; empty: that of the names of joints
+  std::string design;              ///< design label of an MTN file; empty: that of the list of joint names
   double row_s = 0.02;             ///< time of a row of a gait, and of a step between two rows of a behavior
   std::optional<SkillKind> skill;  ///< unset: by the motion
 };
@@ -59,7 +59,7 @@ struct MotionFormat {
   /// Returns the motion; its angles are in rad.  Throws sim::ConfigError with line and column, or the offset of the
   /// byte.  Null: not possible.
   sim::JointMotion (*read)(const MotionSource& source, Losses& losses);
-  /// As `write`, for a format of several files in a folder.
+  /// Like `write`, for a format of several files in a folder.
   std::vector<ExportedFile> (*write_folder)(const sim::JointMotion& motion, const JointNames& names,
                                             const FormatOptions& options, Losses& losses) = nullptr;
 };

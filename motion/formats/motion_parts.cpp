@@ -40,13 +40,15 @@ void list_losses(const sim::JointMotion& motion, const Keeps& keeps, Losses& los
   if (!motion.poses.empty())
     losses.push_back("names of " + counted(motion.poses.size(), "pose") + " are not kept; their values are");
   if (!keeps.notes && notes > 0) losses.push_back(counted(notes, "note") + " of keys are not kept");
-  if (!keeps.loop && motion.loop) losses.push_back("one cycle of the loop is written: who plays the file repeats it");
+  if (!keeps.loop && motion.loop)
+    losses.push_back("one cycle of the loop is written: the player of the file repeats it");
   if (!motion.changes.empty())
     losses.push_back(counted(motion.changes.size(), "change") + " of the world are not kept");
   if (!motion.sounds.empty())
     losses.push_back(counted(motion.sounds.size(), "sound") + (motion.sounds.size() == 1 ? " is" : " are") +
                      " not kept");
-  if (motion.recorded) losses.push_back("where it was recorded is not kept");
+  if (motion.recorded) losses.push_back("the place of the recording is not kept");
+  // A start with default values is no loss.
   const sim::MotionStart usual;
   if (!keeps.start && (motion.start.max_velocity != usual.max_velocity || motion.start.min_s != usual.min_s))
     losses.push_back("'start' is not kept: the player chooses the way to the first pose");

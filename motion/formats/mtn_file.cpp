@@ -114,6 +114,7 @@ class MtnParser {
     const std::size_t end = begin_section(3);
     expect(4, 0, "the type of the data");
     const std::size_t joints = file.locators.size();
+    // Every key but the first is preceded by a number of frames.
     const std::size_t size = 4 * (3 + joints) + (keys - 1) * 4 * (4 + joints);
     if (end - at_ != size)
       fail(at_, std::to_string(keys) + " keys of " + std::to_string(joints) + " joints need " + std::to_string(size) +
@@ -124,6 +125,7 @@ class MtnParser {
       if (i > 0) {
         key.between = signed_number();
         if (key.between < 0) fail(at_ - 4, "the number of frames must be >= 0, got " + std::to_string(key.between));
+        // The number counts the frames between two keys, without the key itself.
         time_s += (key.between + 1.0) * mtn_frame_s;
         if (time_s > sim::max_motion_s) fail(at_ - 4, "the motion must last at most 86400 s");
       }

@@ -33,6 +33,7 @@ bool read_note(const std::string& note, MtnKey& key) {
   constexpr std::size_t max_note = 100;
   long long roll = 0, pitch = 0, yaw = 0;
   int end = 0;
+  // The attitude of the body that MTN keeps is not part of a motion; it travels in the note of a key.
   const bool is_attitude =
       note.size() <= max_note && std::sscanf(note.c_str(), "body roll %12lld pitch %12lld yaw %12lld (1e-6 rad)%n",
                                              &roll, &pitch, &yaw, &end) == 3;

@@ -247,6 +247,8 @@ std::vector<ExportedFile> write_open_r_object(const sim::JointMotion& motion, co
   const std::string camel = camel_case(table.name), object = camel + "Motion";
   std::string binary;
   for (const char c : camel.substr(0, 8)) binary += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  // Fills the holes @X@ of a template. Braces and percent signs, which fmt would take, are frequent in C++ and make
+  // files.
   const auto filled = [&](std::string_view text) {
     std::string result;
     for (std::size_t i = 0; i < text.size(); ++i) {

@@ -52,6 +52,7 @@ class SkillMotion {
     for (int slot = skill_.first_joint; slot < skill_joints; ++slot) {
       const std::string joint = joint_of_slot(source_, slot);
       if (!joint.empty()) joints_.emplace_back(static_cast<std::size_t>(slot), joint);
+      // Arrays list 16 joints, whatever the robot has; zeros of missing ones are not a loss.
       const bool is_used = std::any_of(skill_.rows.begin(), skill_.rows.end(), [&](const SkillRow& row) {
         return row.angles_deg[static_cast<std::size_t>(slot)] != 0;
       });
@@ -101,6 +102,7 @@ class SkillMotion {
     bool has_trigger = false;
     const SkillRow* before = nullptr;
     for (const SkillRow* row : played_rows()) {
+      // Such a row waits for an angle of the IMU, which a motion with fixed times cannot express.
       has_trigger = has_trigger || row->trigger_axis != 0;
       int distance = 0;
       for (std::size_t j = 0; before != nullptr && j < skill_joints; ++j)

@@ -57,6 +57,7 @@ class SkillWriter {
                                                                                          : SkillKind::behavior);
     list_losses(motion_, {.loop = kind == SkillKind::gait}, losses_);
     skill_.name = motion_name(options_.name.empty() ? motion_.name : options_.name);
+    // The name becomes an identifier of C.
     std::replace(skill_.name.begin(), skill_.name.end(), '-', '_');
     if (std::isdigit(static_cast<unsigned char>(skill_.name[0]))) skill_.name.insert(0, "_");
     list_unused_joints();
@@ -131,6 +132,7 @@ class SkillWriter {
                         sim::number_text(motion_.end_s()) + " s");
     skill_.period = static_cast<int>(rows);
     skill_.first_joint = first_of_gait;
+    // At equal shares of the cycle, so that the loop closes although rows have a fixed duration.
     for (double k = 0; k < rows; ++k) skill_.rows.push_back(row_of(values_at(k * motion_.end_s() / rows)));
     std::vector<std::string> left_out;
     for (std::size_t j = 0; j < slots_.size(); ++j)
@@ -153,6 +155,7 @@ class SkillWriter {
       written_s += distance == 0 ? wait(duration_s, row) : move(duration_s, distance, row);
       if (skill_.rows.size() > max_rows) refuse_motion(motion_, "a behavior must have at most 127 rows");
     }
+    // A negative number of rows marks a behavior.
     skill_.period = -static_cast<int>(skill_.rows.size());
     if (std::abs(written_s - motion_.end_s()) > 1e-6)
       losses_.push_back("the behavior lasts " + sim::number_text(written_s) + " s instead of " +

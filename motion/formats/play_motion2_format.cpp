@@ -51,6 +51,7 @@ std::string write_play_motion2(const sim::JointMotion& motion, const JointNames&
   for (const TableJoint& joint : table.joints) joints.push_back(yaml_word(joint.foreign));
   for (const std::vector<double>& row : table.rows)
     for (const double value : row) positions.push_back(yaml_double(value));
+  // The approach to the first pose counts as part of the motion.
   for (const double t_s : table.times_s) times.push_back(yaml_double(motion.start.min_s + t_s));
   add_list("joints", joints);
   add_list("positions", positions);

@@ -82,6 +82,7 @@ class TableBuilder {
 
   PoseTable build() {
     choose_joints();
+    // A table has the start and the end in any case, and between them all times at which a joint has a key.
     times_.add(0);
     times_.add(motion_.end_s());
     for (const sim::MotionTrack* track : tracks_)
@@ -115,6 +116,7 @@ class TableBuilder {
       tracks_.push_back(&all_tracks_[i]);
       rest_.push_back(0);
     };
+    // The format needs all joints in its own order, so those that the motion does not name are filled in at rest.
     if (list != nullptr && list->complete) {
       for (const auto& [servo, name] : list->names) {
         std::size_t i = 0;

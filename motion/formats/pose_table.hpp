@@ -27,7 +27,7 @@ struct PoseTable {
   std::vector<sim::MotionTrack> tracks() const;
 };
 
-/// What a table must be like.
+/// Requirements on a table.
 struct TableRules {
   double tick_s = 0;  ///< times are whole multiples of it; 0: any
   std::size_t max_rows = sim::max_motion_keys;

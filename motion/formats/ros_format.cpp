@@ -78,6 +78,7 @@ std::string write_ros(const sim::JointMotion& motion, const JointNames& names, c
     text += (j > 0 ? ", " : "") + yaml_word(table.joints[j].foreign);
   text += "]\npoints:\n";
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    // In whole nanoseconds first, so that sec and nanosec agree.
     const auto time_ns = std::llround(table.times_s[i] * billion);
     text += "- {positions: [";
     for (std::size_t j = 0; j < table.rows[i].size(); ++j) text += (j > 0 ? ", " : "") + yaml_double(table.rows[i][j]);
@@ -163,6 +164,7 @@ sim::JointMotion read_ros(const MotionSource& source, Losses& losses) {
   diagnostics.throw_if_any();
   const RosTrajectory& file = read.trajectory;
   check_points(file, diagnostics, root.place);
+  // Sizes are checked against 'joint_names', which must be read without errors first.
   diagnostics.throw_if_any();
   const std::vector<std::string> joints = joints_called(source, "ros", file.joints, root.place);
   sim::JointMotion motion;
@@ -173,6 +175,7 @@ sim::JointMotion read_ros(const MotionSource& source, Losses& losses) {
     const RosPoint& point = file.points[i];
     has_effort = has_effort || !point.effort.empty();
     has_unused_accelerations = has_unused_accelerations || (!point.accelerations.empty() && point.velocities.empty());
+    // Between points with velocities ROS controllers follow a cubic spline, with accelerations a quintic one.
     if (i > 0 && !point.velocities.empty() && !file.points[i - 1].velocities.empty()) {
       is_curved = true;
       has_unused_accelerations =

@@ -113,6 +113,7 @@ class ArrayReader {
            !std::isspace(static_cast<unsigned char>(line[end])))
       ++end;
     const experiment::Word word{line.substr(i, std::max(end - i, std::size_t{1})), static_cast<int>(i) + 1};
+    // Values of the array are int8_t in C.
     const auto value = static_cast<int>(lines_.whole_of(word, -128, 127, "a number of a skill"));
     std::vector<Number>& numbers = lists_.back().numbers;
     if (numbers.size() == max_numbers) lines_.fail(word, "a skill must have at most 128 rows");
@@ -143,6 +144,8 @@ class SkillReader {
     skill.pitch_deg = at(2, "the pitch");
     ratio_ = at(3, "the ratio of angles");
     if (ratio_ != 1 && ratio_ != 2) fail(3, "the ratio of angles must be 1 or 2, got " + std::to_string(ratio_));
+    // The number of rows tells the kind: 1 is a posture, more is a gait, and a negative number a behavior, whose head
+    // also has a loop.
     const int rows = std::abs(skill.period);
     if (skill.period < 0) read_loop(skill, rows);
     const std::size_t head = skill.period < 0 ? 7 : 4;
@@ -230,6 +233,7 @@ std::string skill_text(const SkillArray& skill) {
   int largest = 0;
   for (const SkillRow& row : skill.rows)
     for (const int angle : row.angles_deg) largest = std::max(largest, std::abs(angle));
+  // Numbers of an array are int8_t, so larger angles are halved.
   const int ratio = largest > 127 ? 2 : 1;
   const char* const kind = skill.period == 1 ? "posture" : skill.period > 1 ? "gait" : "behavior";
   std::string text = "// " + std::string(kind) + " of OpenCat, " + std::to_string(std::abs(skill.period)) +

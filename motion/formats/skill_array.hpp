@@ -12,7 +12,7 @@ constexpr int skill_joints = 16;
 /// Row of a skill: angles of all joints in degrees; those that a gait does not have are 0.
 struct SkillRow {
   std::vector<int> angles_deg = std::vector<int>(skill_joints);
-  // Of a behavior.
+  // Only for a behavior.
   int speed = 8;         ///< of the fastest joint to this row, 1/4 degree a step; 0: at once
   int delay = 0;         ///< after the row, 1/20 s
   int trigger_axis = 0;  ///< 0: none

@@ -113,6 +113,7 @@ std::string write_pos(const sim::JointMotion& motion, const JointNames& names, c
   if (at_s < 0 || at_s > motion.end_s())
     refuse_motion(motion, "the instant must be from 0 to " + sim::number_text(motion.end_s()) + " s, got " +
                               sim::number_text(at_s));
+  // A single pose has no loop to lose.
   list_losses(motion, {.loop = true}, losses);
   if (motion.end_s() > 0) losses.push_back("only the pose at " + sim::number_text(at_s) + " s is kept");
   sim::JointMotion pose;

@@ -77,7 +77,7 @@ class TekkotsuReader {
       return true;
     }
     if (is_word(words[0], {"condensed", "specialize"}))
-      lines_.fail(words[0], "postures for one model of robot are not supported: must be a name of an output");
+      lines_.fail(words[0], "postures for a single robot model are not supported: must be a name of an output");
     return is_other_section_ || first == "verbose";
   }
 
@@ -102,7 +102,9 @@ class TekkotsuReader {
     if (words.size() != 2) lines_.fail(words[0].column, "must have a command and a file");
     const std::string name(words[1].text);
     if (!source_.read_other) lines_.fail(words[1], "other files cannot be loaded here");
+    // A file that loads itself would not end.
     if (depth_ >= max_depth) lines_.fail(words[1], "files must load each other at most 4 deep");
+    // A motion may come from someone else: it reads no file outside of its folder.
     if (name.starts_with('/') || name.find("..") != std::string::npos)
       lines_.fail(words[1], "the file must be in the folder of this one");
     std::string bytes;
@@ -168,12 +170,14 @@ std::vector<std::string> TekkotsuOutputs::matches(const std::string& name) const
 
 std::vector<std::string> TekkotsuOutputs::joints_of(const experiment::LineReader& lines, const experiment::Word& word) {
   std::string name(word.text);
+  // Tekkotsu ignores '~' at the end of a name.
   while (name.ends_with('~')) name.pop_back();
   if (name.empty()) lines.fail(word, "must be the name of an output");
   check_joint_name(name, lines.place(word.column));
   if (source_.names.empty()) return {name};
   std::vector<std::string> found = matches(name);
   if (found.empty()) {
+    // A name without a side means both sides.
     const std::vector<std::string> left = matches("L" + name), right = matches("R" + name);
     if (left.size() == 1 && right.size() == 1) found = {left[0], right[0]};
   } else if (found.size() > 1) {

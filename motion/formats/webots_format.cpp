@@ -171,6 +171,7 @@ class WebotsReader {
     std::vector<Cell>& row = cells_.emplace_back();
     for (std::size_t i = 2; i < words.size(); ++i) {
       Cell& cell = row.emplace_back();
+      // '*' leaves the device to other controllers.
       cell.is_driven = words[i].text != "*";
       if (cell.is_driven) cell.value = lines_.number_of(words[i], -1e6, 1e6, "a position");
     }

@@ -34,8 +34,10 @@ int HalfEllipse::frames(std::span<const double> values) const {
 sim::Vector3d HalfEllipse::foot_at(std::span<const double> values, const Leg& leg, double phase) {
   const std::size_t of_rear = is_front(leg) ? 0 : rear_height - front_height;
   const double ground = values[ground_share];
+  // `skew` makes the strides of both sides differ, which turns the walk.
   const double half_m = values[length] / 2 * (1 + side_of(leg) * values[skew]);
   double x = 0, z = 0;
+  // On the ground the foot moves back at a constant speed, or the body would jerk.
   if (phase < ground) {
     x = half_m * (1 - 2 * phase / ground);
   } else {

@@ -40,6 +40,7 @@ class LegReader {
     if (hip == nullptr || flap == nullptr || knee == nullptr) return leg;
     leg.hip = hip->anchor_m;
     leg.knee = knee->anchor_m;
+    // Inverse kinematics treats the hip as one point with two axes.
     if (!flap->anchor_m.isApprox(hip->anchor_m, 1e-9))
       errors.push_back("leg '" + name + "': the axes of swing and flap must cross");
     read_foot(knee->bodies.at(1), leg);

@@ -23,7 +23,7 @@ struct LegPosture {
 /// Leg with a hip of two crossing axes and a knee: it swings about y, flaps about x, and the knee turns about y.
 struct Leg {
   std::string name;  ///< such as `lf`; its servos are `lf_swing`, `lf_flap` and `lf_knee`
-  // In the vehicle frame, at zero of all joints.
+  // Positions in the vehicle frame, with all joints at zero.
   sim::Vector3d hip = sim::Vector3d::Zero(), knee = sim::Vector3d::Zero(), foot = sim::Vector3d::Zero();
   double foot_radius_m = 0;
   /// Directions of the axes: 1 along +y (swing, knee) or +x (flap), -1 against it.

@@ -11,6 +11,8 @@ std::vector<double> with_limited_steps(const std::vector<double>& values, double
   const std::size_t n = values.size();
   std::vector<double> limited;
   for (std::size_t i = 0; i < n; ++i) {
+    // The smallest function above and the largest below the values with bounded steps. Their mean has bounded steps,
+    // too, and no lag.
     double above = values[i], below = values[i];
     for (std::size_t j = 0; j < n; ++j) {
       const std::size_t apart = i > j ? i - j : j - i;
@@ -53,6 +55,7 @@ sim::JointMotion leg_motion(const std::string& vehicle, const std::vector<Leg>& 
   motion.loop = true;
   motion.frame_s = frame_s;
   motion.start = {.max_velocity = 2, .min_s = 0.5};
+  // One key more than frames: the last one repeats the first, so that the loop closes.
   motion.keys.resize(static_cast<std::size_t>(frames) + 1);
   for (int i = 0; i <= frames; ++i) motion.keys[static_cast<std::size_t>(i)].at_s = i * frame_s;
   for (const Leg& leg : legs) {

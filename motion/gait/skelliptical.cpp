@@ -32,6 +32,7 @@ Skelliptical::Skelliptical(const sim::VehicleConfig& vehicle)
       frame_s_(frame_s_of(vehicle)),
       scale_(reach_m(legs_[0]) / ers7_reach_m) {
   const std::vector<double> start = fast_forward();
+  // Lengths were found for the ERS-7, and scale with the reach of the legs.
   const auto length = [&](const char* name, Number number, double low_m, double high_m) {
     numbers_.push_back({name, scale_ * low_m, scale_ * start[number], scale_ * high_m});
   };
@@ -150,7 +151,7 @@ LegPosture Skelliptical::posture_at(std::span<const double> values, const GaitSt
                         (1 - forward) * of_leg(values, front, front_turn_lift, rear_turn_lift);
   const double up_m =
       stroke.height * lift_m - stroke.thrust * values[thrust] - values[canter] * std::cos(2 * pi * phase);
-  // From the hip, level, then in the vehicle frame, whose nose is down.
+  // Relative to the hip and level, then in the vehicle frame, whose nose is down.
   const double level_x_m = x_m + forward_m;
   const double level_z_m = up_m - (front ? front_height_m : values[rear_body_height]);
   const double c = std::cos(tilt_rad), s = std::sin(tilt_rad);

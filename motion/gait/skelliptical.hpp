@@ -7,7 +7,7 @@
 
 namespace motion {
 
-/// What a walk does in half a period.
+/// Motion of a walk in half a period.
 struct GaitStep {
   double forward_m = 0, left_m = 0, turn_rad = 0;  ///< of the feet over the body; turn: counter-clockwise
 };

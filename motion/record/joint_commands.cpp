@@ -86,6 +86,7 @@ bool JointCommands::wish_of(const std::string& name) {
   else if (name == "'")
     wishes_.push_back(RecordWish::push);
   else if (name == "tab")
+    // Hands may leave the keys for any reason: one key stops all joints.
     release_all();
   else if (name == "=" || name == "+")
     speed_ = std::min(max_speed, speed_ * speed_notch);
@@ -99,6 +100,8 @@ bool JointCommands::wish_of(const std::string& name) {
 void JointCommands::key(const std::string& name, bool is_down) {
   for (Keys& keys : keys_) {
     if (name == keys.plus) {
+      // A press that ends before the next frame must still move the joint, so it is kept beside the present state of
+      // the key.
       keys.plus_pressed = keys.plus_pressed || is_down;
       keys.plus_held = is_down;
       return;

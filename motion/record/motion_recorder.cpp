@@ -65,7 +65,7 @@ MotionRecorder::MotionRecorder(RecordOptions options, const std::string& journal
   options_.stage.kept_s = options_.back_s;
   if (options_.over) frame_s_ = options_.over->frame_s;
   stage_ = std::make_unique<MotionStage>(options_.stage, [this](MotionStage& stage) { return live_motion(stage); });
-  // What is recorded.
+  // Settings that describe the recording.
   const sim::WorldConfig& world = stage_->world().config();
   settings_.world = world.name.empty() ? std::filesystem::path(options_.stage.world).stem().string() : world.name;
   settings_.vehicle = stage_->vehicle().name();
@@ -244,6 +244,7 @@ void MotionRecorder::add_frame(std::span<const double> velocities) {
   }
   if (records) set_points_->limit(armed_);
   ++frames_;
+  // Written before it is played, so that a crash of the world loses no frame.
   journal_->frame(recorded_values());
   const auto kept = static_cast<std::int64_t>((options_.back_s + more_than_back_s) / frame_s_);
   stage_->player().set_frame(frames_, armed_, recorded_values(), kept);

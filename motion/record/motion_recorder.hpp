@@ -16,7 +16,7 @@
 
 namespace motion {
 
-/// What is recorded, where, and over what.
+/// Subject, place and base of a recording.
 struct RecordOptions {
   StageOptions stage;
   std::string name = "motion";           ///< of a new motion

@@ -52,7 +52,7 @@ bool is_key_name(const std::string& name) {
 void take_event(const experiment::InputEvent& event, JointCommands& commands) {
   switch (event.type) {
     case experiment::InputEvent::report:
-      // What is held is unknown.
+      // Which keys are held is unknown.
       if (event.code == experiment::InputEvent::report_dropped) commands.release_all();
       break;
     case experiment::InputEvent::button:
@@ -80,6 +80,7 @@ TerminalInput::~TerminalInput() {
 
 void TerminalInput::take(const experiment::KeyEvent& event, JointCommands& commands) {
   if (event.ctrl) {
+    // A raw terminal sends Ctrl-C as a key; it must end the recording in order, not kill it.
     if (event.action == experiment::KeyEvent::Action::press && (event.key == "c" || event.key == "d"))
       commands.key("enter", true);
     return;
@@ -87,6 +88,7 @@ void TerminalInput::take(const experiment::KeyEvent& event, JointCommands& comma
   if (is_silent_ || event.action == experiment::KeyEvent::Action::repeat) return;
   if (is_reporting_) return commands.key(event.key, event.action == experiment::KeyEvent::Action::press);
   const Clock::time_point now = Clock::now();
+  // A terminal without releases repeats a held key; a repetition must not toggle the joint again.
   const bool is_repeated = event.key == last_key_ && now - last_at_ < repeat_interval;
   last_key_ = event.key;
   last_at_ = now;

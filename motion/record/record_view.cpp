@@ -21,8 +21,8 @@ void RecordView::serve(bool is_paused) {
 std::string RecordView::execute(const std::string& command, const std::string& text) {
   if (command == "spawn")
     throw sim::ConfigError(
-        {"a motion has the vehicles of its world: one cannot be spawned, only objects be added, {add: ...}"});
-  if (command != "do") throw sim::ConfigError({"a recording is steered by its keys"});
+        {"a motion has the vehicles of its world: only objects can be added, {add: ...}, no vehicles spawned"});
+  if (command != "do") throw sim::ConfigError({"a recording is controlled by its keys"});
   const sim::ConfigNode action = sim::parse_untrusted(text, "do");
   sim::Diagnostics diagnostics;
   sim::check_untrusted(action, "", diagnostics);

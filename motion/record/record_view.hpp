@@ -17,7 +17,7 @@ class RecordView {
       : recorder_(recorder), page_(options, recorder.stage()) {}
 
   std::string url() const { return page_.url(); }
-  /// Serves the pages; to be called once a frame, also while the recording is paused.
+  /// Serves the pages; to be called once a frame, even while the recording is paused.
   void serve(bool is_paused);
   /// Announces that the recording went back in time.
   void went_back() { page_.went_back(); }

@@ -95,7 +95,7 @@ Easing easing_at(const sim::JointMotion& motion, double at_s) {
 MotionTrack spliced(const MotionTrack& track, const std::vector<TrackKey>& part, double frame_s, Easing ease) {
   const double from_s = part.front().at_s, to_s = part.back().at_s;
   MotionTrack result{track.joint, {}};
-  // Before the part.
+  // Keys before the part.
   auto key = track.keys.begin();
   for (; key != track.keys.end() && key->at_s < from_s - same_time_s; ++key) result.keys.push_back(*key);
   const bool is_cut = key != track.keys.end() && key->at_s > from_s + same_time_s;

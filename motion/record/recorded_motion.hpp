@@ -26,7 +26,7 @@ std::string take_path(const std::string& path);
 /// Returns the path of the journal of a recording that lasts: `wave.yaml.journal`.
 std::string journal_path(const std::string& path);
 
-/// A journal, as far as it can be read.
+/// Readable part of a journal.
 struct RecoveredTake {
   Take take;
   std::optional<TakeDamage> damage;  ///< unset: all of it was read
@@ -35,7 +35,7 @@ struct RecoveredTake {
 /// removed.  Throws sim::ConfigError for one without a good frame, and for what is not a journal.
 std::optional<RecoveredTake> read_journal(const std::string& path);
 
-/// What save_take() wrote.
+/// Files that save_take() wrote.
 struct SavedTake {
   sim::JointMotion motion;      ///< with keys
   std::string damaged_journal;  ///< where a damaged journal is kept: `wave.yaml.journal.bad`; empty: it was not

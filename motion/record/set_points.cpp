@@ -68,6 +68,7 @@ bool SetPoints::find_limited(std::span<const std::size_t> joints) {
 void SetPoints::limit(std::span<const std::size_t> joints) {
   limited_ = values_;
   if (pairs_.limit(limited_) == 0) return;
+  // Pairs of joints limit each other: only armed joints may give way, if that is enough.
   if (!find_limited(joints)) {
     limited_ = values_;
     pairs_.limit(limited_);

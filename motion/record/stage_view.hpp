@@ -24,7 +24,7 @@ class StageView {
   std::string url() const { return page_.url(); }
   /// Number of pages.
   int clients() const { return page_.clients(); }
-  /// What the pages show of the pace.
+  /// Pace as shown on the pages.
   sim::RunControl& control() { return control_; }
   /// Serves the pages, and passes their requests on; to be called once a frame, also during a pause.
   void serve(const viewer::RunView::Execute& execute);

@@ -50,6 +50,8 @@ class TakeParser {
       try {
         read_line(line);
       } catch (const sim::ConfigError& error) {
+        // A journal whose program was killed ends in the middle of a line. What comes before it is recovered, with
+        // the same number of frames for each joint.
         if (damage == nullptr || frames == 0) throw;
         for (std::vector<double>& values : take_.frames) values.resize(frames);
         const auto left = std::count(text_.begin() + static_cast<std::ptrdiff_t>(at_), text_.end(), '\n');
@@ -125,6 +127,7 @@ class TakeParser {
     if (take_.frame_count() >= max_take_frames(take_.frames.size()))
       fail("must have at most " + std::to_string(max_take_frames(take_.frames.size())) + " frames");
     const bool is_first = take_.frame_count() == 0;
+    // A line holds only what changed.
     for (std::vector<double>& values : take_.frames) values.push_back(is_first ? std::nan("") : values.back());
     while (!rest.empty()) {
       rest.remove_prefix(1);
@@ -161,6 +164,7 @@ void TakeSettings::read(sim::ParamReader& in) {
   in.read("world", world, "name of the world");
   in.read("vehicle", vehicle, "name of the vehicle in the world");
   in.read("model", model, "name of the vehicle model");
+  // 2^53: YAML numbers pass through a double.
   in.read("seed", seed, sim::between(0, 9007199254740992.0), "seed of the run");
   in.read("set", set, "changes of the world, as with --set");
   in.read("frame_s", frame_s, sim::between(0.001, 1), "duration of a frame");

@@ -11,7 +11,7 @@
 
 namespace motion {
 
-/// What is recorded, and where.
+/// Subject and place of a recording.
 struct TakeSettings {
   std::string world, vehicle;  ///< name of the world, and of the vehicle in it
   std::string model;           ///< vehicle model
@@ -62,7 +62,7 @@ struct TakeDamage {
 /// A last line without its end was cut when the program ended, and is ignored.  Throws sim::ConfigError with the line.
 /// `damage`: set where a line after the first frame is bad, and what stands before it is returned.
 Take parse_take(std::string_view text, const std::string& file_name, std::optional<TakeDamage>* damage = nullptr);
-/// As parse_take, from a file.  Throws sim::ConfigError.
+/// Like parse_take(), from a file.  Throws sim::ConfigError.
 Take read_take(const std::string& path, std::optional<TakeDamage>* damage = nullptr);
 
 }  // namespace motion

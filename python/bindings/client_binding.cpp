@@ -32,6 +32,8 @@ class StopBySignal {
     shoal::Client* none = nullptr;
     if (!client_.compare_exchange_strong(none, &client)) return;
     struct sigaction own {};
+    // Python's own handler is only replaced if there is one: a program that ignores Ctrl-C, or ends at once, has
+    // chosen so.
     if (sigaction(SIGINT, nullptr, &before_) != 0 || before_.sa_handler == SIG_IGN || before_.sa_handler == SIG_DFL) {
       client_ = nullptr;
       return;
@@ -255,6 +257,7 @@ class Client : public Guarded {
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     };
     try {
+      // Other threads of Python continue while this one waits.
       const WithoutGil others;
       const StopBySignal stop(*own_);
       const Waiting waiting(*own_);
@@ -266,6 +269,7 @@ class Client : public Guarded {
         if (result) return result;
       }
     } catch (const shoal::ClientError&) {
+      // The handlers of Python come first, so that Ctrl-C raises KeyboardInterrupt and not an error of the bus.
       raise();
       throw;
     }
@@ -280,6 +284,7 @@ class Client : public Guarded {
 
 void add_client(py::module_& module) {
   using py::literals::operator""_a;
+  // Threads that wait in C++ must return before the interpreter ends, or they would take the GIL of a dead one.
   py::module_::import("atexit").attr("register")(py::cpp_function([] { end_interpreter(&Waiting::stop_all); }));
   py::class_<Client>(module, "Client")
       .def(py::init<const std::string&, const std::string&>(), "name"_a, "lcm_url"_a = "")

@@ -18,7 +18,7 @@ class WithoutGil {
   PyThreadState* state_;
 };
 
-/// Takes the GIL, which the thread has released by WithoutGil, while it lives.
+/// Holds the GIL, which the thread has released by WithoutGil, during its lifetime.
 class WithGil {
  public:
   WithGil();

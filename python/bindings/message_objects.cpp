@@ -303,6 +303,7 @@ class Encoder {
       case WireType::string:
         return text(value);
       case WireType::boolean:
+        // Strict: a number where the type has a boolean is most likely meant for another member.
         if (!PyBool_Check(value.ptr()) && !is_numpy_bool(value)) refuse(path_, "True or False", value);
         out_ += static_cast<char>(PyObject_IsTrue(value.ptr()));
         return;
@@ -344,6 +345,7 @@ class Encoder {
       PyErr_Clear();
       refuse(path_, "an integer from " + std::to_string(low) + " to " + std::to_string(high), value);
     };
+    // Only true integers: a float would be cut off silently.
     if (!PyIndex_Check(value.ptr())) wrong();
     const py::object index = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));
     if (!index) wrong();
@@ -355,6 +357,7 @@ class Encoder {
 
   void text(const py::handle& value) {
     if (!PyUnicode_Check(value.ptr())) refuse(path_, "a str", value);
+    // Bytes that are not UTF-8 came in by the same escape, so a message can be passed on unchanged.
     const py::object bytes =
         py::reinterpret_steal<py::object>(PyUnicode_AsEncodedString(value.ptr(), "utf-8", "surrogateescape"));
     if (!bytes) {

@@ -60,6 +60,7 @@ std::int64_t InProcessWorld::step(std::int64_t count, const Stop& stop) {
       fault_ = fault.what();
       throw;
     }
+    // The clock is read at every 16th step only: steps of a small world take microseconds.
     if (!stop || (taken & 15) != 15 || Clock::now() < next_check) continue;
     if (stop()) return taken + 1;
     next_check = Clock::now() + interval;
@@ -74,7 +75,7 @@ void InProcessWorld::publish(const std::string& channel, std::span<const std::by
       shoal::embedded_types().find(static_cast<std::uint64_t>(shoal::fingerprint(payload)));
   if (schema == nullptr) throw shoal::MessageError("no message type has the fingerprint of this payload");
   if (const auto error = shoal::validate(*schema, payload, shoal::Finite::any)) throw shoal::MessageError(*error);
-  // What the device accepts
+  // Message types that the device accepts
   const auto reader = channels().received.find(channel);
   if (reader != channels().received.end() && !reader->second.empty()) {
     if ((", " + reader->second + ",").find(", " + schema->name + ",") == std::string::npos)
@@ -122,6 +123,7 @@ const WorldChannels& InProcessWorld::channels() {
 
 void InProcessWorld::require_readable(const std::string& channel) {
   const WorldChannels& all = channels();
+  // A channel that anything publishes, or may publish, can be read even before its first message.
   if (all.published.contains(channel) || all.received.contains(channel) || known_.contains(channel) ||
       subscribed_.contains(channel) || bus_.find(channel) != nullptr)
     return;
@@ -185,7 +187,7 @@ void InProcessWorld::restore(std::span<const std::byte> snapshot) {
   bus_.clear();
   channels_.reset();
   fault_.clear();
-  // What the program has not read is of another future.
+  // Messages that the program has not read belong to a discarded future.
   for (const auto& each : mailboxes_)
     if (const auto mailbox = each.lock()) mailbox->set_unread({});
 }

@@ -117,6 +117,8 @@ void MemberReader::read(std::span<const std::byte> payload, std::span<double> ou
 }
 
 MessageForm::MessageForm(const MessageSchema& schema, const std::vector<std::string>& members) {
+  // The payload is made once and only its numbers are filled in at each step: encoding an object per step would
+  // dominate the time of a small world.
   payload_.resize(sizeof(std::uint64_t));
   put_big_endian(payload_.data(), schema.fingerprint);
   append_zero(schema, payload_);

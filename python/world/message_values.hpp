@@ -20,7 +20,7 @@ class MemberReader {
 
   /// Returns how many numbers the member of this payload has.
   std::size_t count(std::span<const std::byte> payload) const;
-  /// Writes them to `out`; of an array of another length as many as fit, and NaN for the rest.  The payload must be a
+  /// Writes them to `out`; an array of another length is cut off or filled up with NaN.  The payload must be a
   /// valid one of the type.
   void read(std::span<const std::byte> payload, std::span<double> out) const;
 

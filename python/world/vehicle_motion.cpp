@@ -10,6 +10,7 @@ Motion motion_of(const sim::Vehicle& vehicle) {
   const sim::Body& base = vehicle.base();
   const sim::Vector3d p_BV = base.X_WB().inverse() * X_WV.translation();
   const Eigen::Quaterniond q(X_WV.linear());
+  // q and -q are the same attitude; one of them is chosen, so that observations do not jump.
   const double sign = q.w() < 0 ? -1 : 1;
   Motion motion{};
   Eigen::Map<sim::Vector3d>(motion.position_m) = X_WV.translation();

@@ -94,6 +94,7 @@ void WorldPool::check_layout(InProcessWorld& world) const {
 bool WorldPool::wait_for_observations(InProcessWorld& world, const InProcessWorld::Stop& stop) const {
   constexpr double max_s = 10;
   constexpr std::int64_t steps_between_stops = 16;
+  // An observation must exist after a reset, and a sensor may have its first sample later than the first step.
   const auto is_missing = [&](const Observation& observation) {
     return !observation.channel.empty() && world.bus().find(observation.channel) == nullptr;
   };
@@ -128,6 +129,7 @@ void WorldPool::measure_observations() {
 
 void WorldPool::step(std::span<const double> actions, std::span<const std::int64_t> seeds,
                      std::span<double> observations, std::span<std::uint8_t> ended, const InProcessWorld::Stop& stop) {
+  // Checked before any world is stepped, so that an error changes nothing.
   for (std::size_t i = 0; i < worlds_.size(); ++i)
     if (seeds[i] < 0) world(i);
   threads_.for_each(worlds_.size(), [&](std::size_t i) {
@@ -168,6 +170,7 @@ void WorldPool::observe(Member& member, std::span<double> out) const {
   for (std::size_t k = 0; k < layout_.observations.size(); ++k) {
     const Observation& observation = layout_.observations[k];
     const std::span<double> values = out.subspan(offsets_[k], offsets_[k + 1] - offsets_[k]);
+    // NaN: nothing was published yet, or the vehicle does not exist.
     std::fill(values.begin(), values.end(), std::numeric_limits<double>::quiet_NaN());
     if (observation.channel.empty()) {
       const sim::Vehicle* const vehicle = member.world->world().find_vehicle(observation.vehicle);

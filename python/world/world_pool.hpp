@@ -50,7 +50,7 @@ class WorldPool {
   double step_s() const { return step_s_; }
   std::size_t action_values() const { return action_values_; }
   std::size_t observation_values() const { return observation_values_; }
-  /// Returns where the values of each observation begin; the last element is the number of all.
+  /// Returns where the values of each observation begin; the last element is their total number.
   const std::vector<std::size_t>& offsets() const { return offsets_; }
   /// Throws Error when it is not built.
   InProcessWorld& world(std::size_t index);

@@ -21,12 +21,12 @@ void EchoLockConfig::read(ParamReader& in) {
 
 void AcousticsConfig::read(ParamReader& in) {
   in.read_choice("propagation", propagation, "auto", {{"straight", SoundPaths::straight}, {"rays", SoundPaths::rays}},
-                 "straight lines, or rays that bend with the speed of sound; auto: rays where the water has a profile");
+                 "straight lines, or rays refracted by the sound speed profile; auto: rays if the water has a profile");
   in.read("shadow_loss_dB", shadow_loss_dB, between(0, 200),
           "rays: loss of the sound that leaks into shadows, beyond that of the straight line; unset: none leaks");
   in.read("echo_lock", echo_lock, "receivers sometimes take an echo for the first arrival; unset: never");
   in.read("spreading", spreading,
-          "spreading loss along straight lines; of no effect with rays, whose tubes are the spreading");
+          "spreading loss along straight lines; has no effect with rays, whose ray tubes give the spreading");
   in.read("absorption", absorption, "absorption of sound with range");
   in.read("noise", noise, "ambient noise of the sea");
   in.read("multipath", multipath, "echoes of surface and bottom; unset: the direct path alone");

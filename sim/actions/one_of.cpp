@@ -53,6 +53,7 @@ class OneOfAction final : public Action {
   const std::vector<ActionEntry>& choose(Random& random) const {
     if (weights_.empty()) return choices_[random.integer_below(static_cast<std::uint32_t>(choices_.size()))];
     double left = random.uniform() * std::accumulate(weights_.begin(), weights_.end(), 0.0);
+    // Rounding may leave a rest after the last weight, so the last list with a weight above 0 is the answer then.
     std::size_t last = 0;
     for (std::size_t i = 0; i < weights_.size(); ++i) {
       if (weights_[i] <= 0) continue;

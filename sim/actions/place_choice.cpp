@@ -15,6 +15,7 @@ void PlaceChoice::read(ParamReader& in) {
   read_points(in, "places", places_m, 3, "one of these places, at random");
   in.read("area_m", area_m, at_least(0), "size of a box around the place from which the position is drawn");
   in.read("random_yaw", random_yaw, "the heading is drawn from the full circle");
+  // Only keys that are given change anything: without 'rpy_deg' what is moved keeps its attitude.
   if (in.has("position_m")) position_m = position;
   if (in.has("rpy_deg")) rpy_rad = rpy;
   if (in.has("position_m") && in.has("places")) in.error("places", "needs either 'position_m' or 'places', not both");

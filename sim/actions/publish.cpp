@@ -29,6 +29,7 @@ class PublishAction final : public Action {
         "member: value; members that are missing are 0, or NaN in commands where that means as before; utime is "
         "the time");
     if (in.describing() || value_.kind != ConfigNode::Kind::null) return;
+    // No value means a message whose members are all at their defaults.
     value_.kind = ConfigNode::Kind::map;
     value_.place = in.node()->place;
   }

@@ -21,7 +21,7 @@ struct SharedWork {
   /// Returns the number of threads from which on twice as many make the steps less than a tenth faster.
   int useful_threads() const;
   /// Returns a line such as `more than 4 threads would gain less than a tenth: they share 60 % of the work of a step`
-  /// when twice as many threads as `threads` would gain less than a tenth; else an empty text, also when too few steps
+  /// when twice as many threads as `threads` would gain less than a tenth; else an empty text, even when too few steps
   /// were measured.
   std::string advice(int threads) const;
 };

@@ -23,6 +23,7 @@ bool starts_character(char c) {
 
 int text_columns(int file_descriptor) {
   int columns = 0;
+  // COLUMNS goes first: scripts and tests set it to get the same layout everywhere.
   if (const char* text = std::getenv("COLUMNS")) {
     const char* end = text + std::strlen(text);
     const auto [at, error] = std::from_chars(text, end, columns);
@@ -89,6 +90,8 @@ std::string wrapped(std::string_view text, std::size_t columns, std::size_t inde
 std::string two_columns(const std::vector<std::pair<std::string, std::string>>& rows, std::size_t columns,
                         std::size_t max_name_columns) {
   constexpr std::size_t margin = 2;
+  // Only names that fit set the column: one long option would push all meanings to the right. Its own meaning begins
+  // on the next line instead.
   std::size_t width = 0;
   for (const auto& [name, meaning] : rows)
     if (column_count(name) <= max_name_columns) width = std::max(width, column_count(name));

@@ -22,11 +22,11 @@ namespace {
 
 thread_local SharedWork* measured_work = nullptr;
 
-/// What is known of a piece of shared work that this thread does.
+/// Piece of shared work that this thread does.
 struct Piece {
   tbb::task_arena* arena = nullptr;  // of its pool; null: none
   bool measured = false;
-  // Of the work within it that threads shared.
+  // Work within it that threads shared.
   double own_s = 0;        // CPU time of this thread
   double all_s = 0;        // of all threads
   double max_piece_s = 0;  // of the longest part
@@ -74,6 +74,7 @@ void for_each_measured(tbb::task_arena& arena, std::size_t count, const std::fun
   });
   double max_piece_s = 0;
   for (std::size_t i = 0; i < count; ++i) {
+    // Pieces that were shared further have counted their own share; only the rest of a piece is undivided.
     const double undivided_s = took_s[i] - pieces[i].own_s;
     measured_work->shared_s += undivided_s + pieces[i].all_s;
     max_piece_s = std::max(max_piece_s, undivided_s + pieces[i].max_piece_s);

@@ -84,6 +84,7 @@ void InProcessBus::give(const std::string& channel, Queues& queues, std::span<co
     queue->messages.push({channel, Bytes(payload.begin(), payload.end()), false});
     ++counts_.received;
     if (queue->flag) queue->flag->store(true, std::memory_order_relaxed);
+    // The oldest message gives way: a reader that falls behind wants the latest state.
     if (queue->messages.size() <= queue->capacity) continue;
     queue->messages.take();
     ++queue->dropped;

@@ -162,6 +162,7 @@ void MessageGate::close(GateMailbox& mailbox) {
   Channel& channel = mailbox.channel();
   std::erase(channel.mailboxes, &mailbox);
   channel.capacity = 0;
+  // The channel keeps as much as its largest mailbox, which may just have gone.
   for (const GateMailbox* other : channel.mailboxes) channel.capacity = std::max(channel.capacity, other->capacity());
   if (!channel.mailboxes.empty()) return;
   const std::size_t slot = channel.slot;

@@ -52,8 +52,8 @@ class MessageGate final : public Bus {
   /// Collects messages and delivers all waiting ones to the mailboxes of their channels.  Returns the delivered
   /// messages, which are valid until the next call.  Messages on channels without a reader are dropped.
   const std::vector<Delivery>& admit();
-  /// As admit(), but delivers `messages` in place of those from outside, which are collected, put in order and returned
-  /// in `messages`.  For a run that repeats its record while programs follow it.
+  /// Like admit(), but delivers `messages` in place of those from outside, which are collected, put in order and
+  /// returned in `messages`.  For a run that repeats its record while programs follow it.
   const std::vector<Delivery>& admit_instead(std::vector<Delivery>& messages);
 
   /// Callback of admit() between collection and delivery; may reorder, add and remove messages.

@@ -54,6 +54,7 @@ void OpticsConfig::read(ParamReader& in) {
   in.read_deg("max_angle_deg", max_angle_rad, above_to(0, 180), "fisheye: pixels farther off the axis are black");
   if (in.describing()) return;
   if (in.has("fov_deg") && in.has("focal_px")) in.error("focal_px", "needs either 'fov_deg' or 'focal_px', not both");
+  // problem() knows values, not keys; the key that it quotes decides at which line of the file the error is reported.
   const std::string wrong = problem();
   if (wrong.empty()) return;
   for (const char* key : {"distortion", "principal_px", "focal_px", "fov_deg", "width"})
@@ -208,7 +209,9 @@ std::optional<Vector3d> Optics::direction_S(double u, double v) const {
     return Vector3d(1, -p->x(), -p->y()).normalized();
   }
   const double radius = distorted.norm();
+  // Beyond the fold of the distortion two directions share a pixel; such pixels stay black.
   if (radius >= fold_radius_ || radius > distorted_radius(last_good_)) return std::nullopt;
+  // sin(angle) / radius below would be 0 / 0.
   if (radius == 0) return Vector3d::UnitX();
   const double angle = undistorted_radius(radius);
   const double side = std::sin(angle) / radius;
@@ -224,6 +227,7 @@ std::optional<Vector2d> Optics::project(const Vector3d& p_S) const {
     const double radius = distorted_radius(angle);
     place = across > 0 ? Vector2d(Vector2d(-p_S.y(), -p_S.z()) * (radius / across)) : Vector2d::Zero();
   } else {
+    // Behind the camera the division would mirror the point into the image.
     if (!(p_S.x() > 0)) return std::nullopt;
     const Vector2d ideal(-p_S.y() / p_S.x(), -p_S.z() / p_S.x());
     if (distorted_ && ideal.norm() > last_good_) return std::nullopt;

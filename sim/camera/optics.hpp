@@ -85,7 +85,7 @@ class Optics {
 
 /// Viewing directions of all pixels of an image, computed once.
 struct PixelRays {
-  int width = 0, height = 0;  ///< size of the image in pixels
+  int width = 0, height = 0;  ///< size of the image, pixels
   int per_side = 1;           ///< rays per pixel along u and along v
   float pixel_angle = 0;      ///< angle between neighboring rays at the center of the image, rad
   /// Unit vectors row by row, width * per_side in each row.  A zero vector marks a pixel outside the field of view.

@@ -68,6 +68,7 @@ Renderer::Renderer(const PhysicsWorld& physics, std::shared_ptr<const PixelRays>
       sky_(options.light),
       to_sun_W_(options.light.to_sun_W()),
       sky_strength_(static_cast<float>(options.light.sky)) {
+  // Only color images need surfaces, and their textures may be large.
   if (options_.kind != ImageKind::color) return;
   for (int i = 0; i < physics_.materials(); ++i) surfaces_.push_back(make_surface(i, true));
 }
@@ -155,6 +156,7 @@ void Renderer::gather(Tile& tile, const Pose& X_WS) const {
     for (int column = 0; column < tile.columns; ++column, ++place) {
       const Eigen::Vector3f& direction_S = directions_S[column];
       tile.number[place] = -1;
+      // A zero direction marks a pixel outside of the lens.
       if (direction_S.isZero(0)) continue;
       Ray& ray = tile.rays[tile.seeing];
       ray.origin_W = X_WS.translation();
@@ -262,6 +264,7 @@ const Renderer::Paint& Renderer::paint(Tile& tile, int part_number, int material
   const PartInfo& part = physics_.parts()[static_cast<std::size_t>(part_number)];
   const Surface& material = surfaces_[static_cast<std::size_t>(material_number)];
   found = {part_number, material_number, material.gloss, nullptr, false, material.color};
+  // Vehicles without colors get one each, so that they can be distinguished; fixed objects look like ground.
   const bool fixed = physics_.bodies()[static_cast<std::size_t>(part.body)]->fixed();
   if (part.color) {
     found.color = linear_color(*part.color);

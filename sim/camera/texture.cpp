@@ -107,6 +107,7 @@ std::shared_ptr<const Texture> TextureLibrary::get(const TextureConfig& config, 
   std::shared_ptr<const ImagePyramid> image;
   if (config.pattern == TextureConfig::Pattern::image) {
     const std::string path = (std::filesystem::path(config.directory) / config.file).lexically_normal().string();
+    // Cameras of all vehicles share an image, which is read by the first one.
     const std::lock_guard lock(mutex_);
     auto& known = images_[path];
     try {

@@ -124,7 +124,7 @@ SHOAL_INLINE void light_above(const Constants& water, const SkyLight& sky, Water
     const float rough = water.wind_slope + rays.rough[i];
     const float facets = exponential(smaller((1 - 1 / square) / rough, 0)) / (rough * square * square);
     const float glint = smaller(4.0F, 0.25F * facets * reflected(cosine_to_sun(water, half)) / larger(toward, 0.2F));
-    // What comes out of the water.
+    // Light that comes out of the water.
     const bool wet = rays.crossing_m[i] < rays.range_m[i];
     const float path_m = wet ? smaller(rays.range_m[i] - rays.crossing_m[i], farthest_m) : 0;
     const float down = larger(-direction.z, 0);

@@ -173,8 +173,10 @@ float WaterView::elevation_m(const Vector3d& p_W) const {
 WaterView::Surface WaterView::surface_at(const Vector3d& p_W) const {
   if (levels_.empty()) return {};
   const auto [number, share] = place_of(p_W);
+  // Beyond the largest level single waves are below a pixel: only their mean roughness is seen.
   if (number + 1 >= levels_.size()) return {0, 0, 0, levels_.back().rough};
   const Surface near = sample(levels_[number], p_W.x(), p_W.y());
+  // The blend from one level to the next avoids a visible seam between them.
   if (share < 0.5F) return near;
   const Surface far = sample(levels_[number + 1], p_W.x(), p_W.y());
   const float blend = 2 * share - 1;

@@ -153,6 +153,7 @@ void VehicleClock::advance_to(Time now, std::optional<double> water_temperature_
   state.now = now;
   if (!state.config.wanders()) return;
   const Time update = from_seconds(state.config.update_s);
+  // Nodes lie ahead of now, so that stamps between two updates are interpolated and never extrapolated.
   while (state.nodes.back().at <= now + look_ahead) {
     state.oscillator.advance(water_temperature_C);
     state.nodes.push_back({state.nodes.back().at + update, state.oscillator.wander_s()});

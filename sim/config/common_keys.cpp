@@ -33,6 +33,7 @@ void read_points(ParamReader& in, const char* key, std::vector<Vector3d>& value,
   if (list->kind != ConfigNode::Kind::list)
     return in.error(key, "'" + std::string(key) + "' must be a list of points, got " + shown(*list));
   value.clear();
+  // Each point is read as its own list, so that errors name its index and line.
   for (std::size_t i = 0; i < list->items.size(); ++i) {
     const std::string name = std::string(key) + "[" + std::to_string(i + 1) + "]";
     const ConfigNode item = map_node(name, list->items[i]);

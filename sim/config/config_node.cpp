@@ -199,6 +199,8 @@ void set_config_path(ConfigNode& root, std::string_view path, const ConfigNode& 
   }
   ConfigNode* node = &root;
   std::string parent = "the file";
+  // A path may set a key that the file leaves to its default, so maps on the way are created. Items of lists are not:
+  // a name alone does not say what kind of item it would be.
   for (const std::string& key : keys) {
     if (node->kind == Kind::null) {
       node->kind = Kind::map;

@@ -41,6 +41,7 @@ void merge_maps(ConfigNode& base, ConfigNode&& over) {
       continue;
     }
     ConfigNode::Entry& target = base.entries[found->second];
+    // The place is that of the overriding file, where the user finds what is in force.
     target.place = entry.place;
     merge(target.value, std::move(entry.value));
   }
@@ -189,6 +190,7 @@ class Loader {
     const auto found = std::find_if(node.entries.begin(), node.entries.end(), is_include);
     if (found == node.entries.end()) return node;
     const ConfigNode include = std::move(found->value);
+    // The key must not reach the reader, which would report it as unknown.
     node.entries.erase(found);
     ConfigNode base;
     for (const ConfigNode* name : included_names(include)) {

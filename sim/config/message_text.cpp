@@ -132,6 +132,7 @@ std::string number_text(double value) {
 
 std::string plural_of(std::string_view word) {
   const std::string text(word);
+  // "a or b": both words get their plural.
   if (const std::size_t either = text.find(" or "); either != std::string::npos)
     return plural_of(text.substr(0, either)) + " or " + plural_of(text.substr(either + 4));
   const auto ends_with_consonant_y = [&] {
@@ -174,9 +175,11 @@ std::string did_you_mean(std::string_view misspelt, const std::vector<std::strin
   const auto is_there = [&](std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
+  // Words of other simulators and of ROS come first: no spelling distance would find them.
   if (const std::string_view here = synonym_of(misspelt); is_there(here))
     return "; did you mean '" + std::string(here) + "'?";
   const auto [stem, unit] = split_unit(misspelt);
+  // The same name in another unit is the likeliest mistake, and the value must change with it.
   for (const std::string& name : names) {
     const auto [other_stem, other_unit] = split_unit(name);
     if (other_stem != stem || other_unit == unit) continue;

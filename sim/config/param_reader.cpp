@@ -129,10 +129,12 @@ const ConfigNode* ParamReader::take(const char* key) {
 void ParamReader::finish() {
   if (describing()) return;
   std::sort(known_.begin(), known_.end());
+  // A key may be read several times, by a type and by its base.
   known_.erase(std::unique(known_.begin(), known_.end()), known_.end());
   std::size_t unknown = 0;
   for (const ConfigNode::Entry& entry : node_->entries) {
     if (std::binary_search(known_.begin(), known_.end(), entry.key)) continue;
+    // One wrong indentation can make hundreds of keys unknown.
     if (++unknown > max_unknown_keys) return error_at(entry.place, "more unknown keys are not shown");
     error_at(entry.place, "unknown key " + quoted_name(entry.key) +
                               "; known keys: " + list_text(known_, known_.size()) + did_you_mean(entry.key, known_));
@@ -289,6 +291,7 @@ void ParamReader::read(const char* key, bool& value, const char* meaning) {
   const ConfigNode* node = take(key);
   if (node == nullptr) return;
   const bool plain = node->kind == Kind::scalar && !node->quoted;
+  // Exactly the core schema of YAML 1.2, without the yes, no, on and off of YAML 1.1.
   if (plain && (node->scalar == "true" || node->scalar == "True" || node->scalar == "TRUE"))
     value = true;
   else if (plain && (node->scalar == "false" || node->scalar == "False" || node->scalar == "FALSE"))
@@ -403,6 +406,7 @@ bool ParamReader::read_path(const char* key, std::string& value, PathUse use, co
 }
 
 bool ParamReader::check_path(const char* key, const std::string& value, PathUse use, const SourcePlace& place) {
+  // Files named on the command line are the choice of the user, not of a world file that may come from elsewhere.
   if (value.empty() || use == PathUse::looked_up || place.origin == Origin::command_line) return true;
   if (place.origin == Origin::bus) {
     error_at(place, quoted_name(key) + " cannot be used in a request from the bus: it names a file");
@@ -452,6 +456,7 @@ void ParamReader::read(const char* key, std::vector<double>& value, const Rule& 
     return error_at(node->place, quoted_name(key) + " must be a list of numbers, got " + shown(*node));
   std::vector<double> numbers(node->items.size());
   bool good = true;
+  // All items are read, so that each wrong one is reported.
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const std::string what = "item " + std::to_string(i + 1) + " of " + quoted_name(key);
     good = take_number(what, node->items[i], rule, numbers[i]) && good;
@@ -554,6 +559,7 @@ bool ParamReader::read_items(const char* key, const ConfigNode& node, const char
     error_at(node.place, quoted_name(key) + " must be a list of maps, got " + shown(node));
     return false;
   }
+  // All wrong items are reported in one go, not only the first.
   for (std::size_t i = 0; i < node.items.size(); ++i) {
     const ConfigNode& item = node.items[i];
     if (item.kind != Kind::map) {

@@ -78,6 +78,7 @@ std::string text_table(const std::vector<ParamInfo>& params) {
     std::string line;
     for (std::size_t i = 0; i < row.size(); ++i)
       line += row[i] + std::string(i + 1 < row.size() ? width[i] - characters(row[i]) + 2 : 0, ' ');
+    // Lines end without blanks, so that the text can be compared and pasted.
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";
   }

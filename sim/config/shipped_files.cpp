@@ -51,7 +51,7 @@ std::string shipped_folder() {
   static const std::string folder = [] {
     const fs::path own = own_file();
     if (own.extension() != ".so") return shipped_folder_of(own.parent_path().string());
-    // At any depth below the prefix
+    // The library may be at any depth below the prefix
     for (fs::path at = own.parent_path(); at.has_relative_path(); at = at.parent_path())
       if (std::string found = shipped_folder_of(at.string()); !found.empty()) return found;
     return std::string();

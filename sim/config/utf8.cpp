@@ -18,6 +18,7 @@ std::size_t utf8_length(std::string_view text, std::size_t at) {
   for (std::size_t i = 1; i < length; ++i)
     if ((byte(at + i) & 0xc0) != 0x80) return 0;
   const unsigned second = byte(at + 1);
+  // Overlong forms, surrogates (D800 to DFFF) and what is above 10FFFF are not UTF-8 (RFC 3629).
   if ((lead == 0xe0 && second < 0xa0) || (lead == 0xed && second >= 0xa0) || (lead == 0xf0 && second < 0x90) ||
       (lead == 0xf4 && second >= 0x90))
     return 0;

@@ -33,6 +33,7 @@ bool plain_is_safe(std::string_view text, bool in_flow) {
   return std::none_of(text.begin(), text.end(), is_control);
 }
 
+// Escapes what a double-quoted scalar of YAML 1.2 (section 5.7) cannot hold as it is; UTF-8 passes unchanged.
 std::string in_double_quotes(std::string_view text) {
   std::string quoted = "\"";
   for (const char c : text) {
@@ -63,6 +64,7 @@ std::string key_text(const std::string& key, bool in_flow) {
   return plain_is_safe(key, in_flow) ? key : in_double_quotes(key);
 }
 
+// Ends soon after `limit` bytes: an error quotes the beginning of a node, which may be as large as its file.
 void append_flow(const ConfigNode& node, std::size_t limit, std::string& out) {
   if (out.size() > limit) return;
   if (node.kind == Kind::list) {
@@ -116,6 +118,7 @@ void append_block(const ConfigNode& node, std::size_t indent, bool first_line_is
 
 void append_entry(const ConfigNode::Entry& entry, std::size_t indent, std::string& out) {
   const std::string key = key_text(entry.key, false);
+  // YAML 1.2 limits keys without '?' to 1024 characters.
   if (key.size() > max_simple_key)
     out += "? " + key + "\n" + std::string(indent, ' ') + ":";
   else

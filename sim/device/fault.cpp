@@ -50,6 +50,7 @@ const NoiseFault& DeviceFaults::noise_of(const std::string& name) {
 
 void DeviceFaults::update() {
   stuck_ = silent_ = false;
+  // Several faults act together: biases add up, factors and probabilities of receiving multiply.
   double received = 1;
   effectiveness_ = 1;
   for (const auto& quantity : quantities_) quantity->fault = {};

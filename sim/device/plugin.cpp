@@ -87,6 +87,8 @@ std::string initializing;
     }
   }
   std::fprintf(stderr, "%s: %s\n", initializing.c_str(), printable(what).c_str());
+  // Exceptions of a plug-in's initializers cannot be caught across dlopen(), so std::terminate() leads here; no
+  // destructor may run.
   std::_Exit(2);
 }
 

@@ -19,6 +19,7 @@ class VehicleWatch : public ConditionWatch {
     int count = 0;
     const auto look_at = [&](const Vehicle& vehicle) {
       const auto number = static_cast<std::size_t>(vehicle.number());
+      // Vehicles that are spawned later have larger numbers; their state begins as unknown.
       if (number >= states_.size()) states_.resize(number + 1, unknown);
       const State now = holds(vehicle) ? yes : no;
       if (fires(states_[number], now)) ++count;
@@ -106,6 +107,7 @@ std::unique_ptr<ConditionWatch> make_watch(const Condition& condition, Stage& st
       return std::make_unique<MessageWatch>(condition, stage);
     case Condition::Kind::touches:
       return make_touch_watch(condition, stage);
+    // Fired by events and not by watching the world.
     case Condition::Kind::none:
     case Condition::Kind::fires:
       break;

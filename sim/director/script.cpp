@@ -46,6 +46,7 @@ Script::Script(Stage& stage) : stage_(stage), zones_(stage.config().zones), live
     plan_next(events_.emplace_back(event, seed_of(stage)));
     watches_.push_back(make_watch(event.when, stage, zones_));
   }
+  // Events name others that may follow them in the file, so they are linked at the end.
   for (std::size_t i = 0; i < events_.size(); ++i)
     for (EventState& cause : events_)
       if (config.events[i].when.kind == Condition::Kind::fires && config.events[i].when.subject == cause.config.name)
@@ -93,11 +94,13 @@ void Script::update_records(Time now) {
       const Zone& zone = zones_.all()[static_cast<std::size_t>(i)];
       if (!zone.contains(p_WV)) continue;
       const auto& limit = zone.config().speed_limit_mps;
+      // Excess speed counts once per step, however many zones with limits overlap.
       speeding = speeding || (limit && vehicle->base().v_WB_W().norm() > *limit);
       if (zone.config().finish && !record.finish_s) record.finish_s = to_seconds(now);
     }
     if (!speeding) continue;
     ++record.speeding_steps;
+    // Counted in steps and multiplied: a sum of many step times would drift.
     record.speeding_s = static_cast<double>(record.speeding_steps) * to_seconds(stage_.clock().step);
   }
 }
@@ -111,6 +114,7 @@ void Script::plan_next(EventState& event) {
   } else if (config.every_s > 0) {
     const double planned_s = config.from_s + static_cast<double>(event.planned) * config.every_s;
     if (planned_s > config.until_s + 1e-9) return;
+    // The jitter depends on the number of the firing, not on earlier draws: a rewind plans the same times.
     event.jitter.begin_step(event.planned);
     event.next = from_seconds(planned_s + (config.jitter_s > 0 ? config.jitter_s * event.jitter.uniform() : 0.0));
   }
@@ -136,6 +140,7 @@ void Script::attempt(std::size_t i, int depth) {
   if (event.config.times > 0 && event.fired >= event.config.times) return;
   if (firings_ >= max_firings_per_step) return cut(event, "more than 1000 events fired in a step");
   if (depth > max_depth) return cut(event, "events fire each other more than 100 deep");
+  // Draws depend on the event and the step only, so that one event does not change the chances of another.
   event.start_draws(stage_.clock().step_number);
   if (event.config.probability < 1 && event.random.uniform() >= event.config.probability) return;
   ++event.fired;
@@ -200,6 +205,7 @@ void Script::run_now(const ConfigNode& action, Diagnostics& diagnostics) {
   };
   check_actions(actions, stage_.config(), find, diagnostics);
   if (!diagnostics.ok()) return;
+  // Several requests in one step share a stream, so that equal ones get different draws.
   if (live_random_step_ != stage_.clock().step_number) {
     live_random_step_ = stage_.clock().step_number;
     live_random_.begin_step(live_random_step_);

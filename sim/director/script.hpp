@@ -47,7 +47,7 @@ class Script {
   bool empty() const;
   void visit_state(StateArchive& archive);
 
-  // For actions.
+  // Used by actions.
   /// Object of the world file, whether it is present or not.
   struct ListedObject {
     const ObjectConfig* config = nullptr;

@@ -48,6 +48,8 @@ void Script::make_catalog() {
       catalog_[object.name] = {&object, X_WE};
       continue;
     }
+    // The same draws as when the world is built, so that an object that appears later stands where it would have
+    // stood.
     const std::vector<Pose> poses = place_instances(object.placement, object.count, X_WE,
                                                     static_cast<std::uint64_t>(stage_.config().run.seed), object.name);
     for (std::size_t i = 0; i < poses.size(); ++i) catalog_[object.name + std::to_string(i + 1)] = {&object, poses[i]};

@@ -20,6 +20,7 @@ class TouchWatch final : public ConditionWatch {
   int count_new(Stage& stage) override {
     if (generation_ != stage.entities().generation()) choose_groups(stage);
     const auto parts = stage.physics().parts();
+    // A pair counts once, however many contacts it has and in whichever order ODE reports it.
     std::set<std::pair<std::int64_t, std::int64_t>> touching;
     for (const ContactReport& contact : stage.physics().contacts()) {
       const int a = parts[static_cast<std::size_t>(contact.parts[0])].group;

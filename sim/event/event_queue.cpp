@@ -129,6 +129,7 @@ std::uint64_t EventQueue::content_hash() const {
     StateHash hash;
     hash.add(payload.event_hash);
     hash.add_bytes(payload.bytes.data(), payload.bytes.size());
+    // A sum does not depend on the order of the payloads' slots, which differs after a snapshot is restored.
     of_payloads += hash.value();
   }
   StateHash hash;

@@ -225,9 +225,11 @@ class ObjFaces {
   std::uint32_t index_of(std::string_view word, const Words& words, std::size_t vertices) {
     constexpr double max_number = 4e9;
     const double number = number_from(word.substr(0, word.find('/')), words, "vertex number");
+    // OBJ counts vertices from 1, and negative numbers back from the last one read.
     const double index = number < 0 ? static_cast<double>(vertices) + number : number - 1;
     if (number != std::floor(number) || !(index >= 0 && index < max_number)) refuse(words, vertices);
     const auto found = static_cast<std::uint32_t>(index);
+    // A face may come before its vertices; whether they exist is known at the end of the file.
     if (found >= std::max(needed_, vertices)) {
       needed_ = std::size_t{found} + 1;
       needed_at_ = words;

@@ -38,6 +38,8 @@ struct StripSum {
 StripSum integrate_strips(double v, double r, double half_length, const StripWeights& whole) {
   StripSum sum;
   const double at_aft = v - half_length * r, at_bow = v + half_length * r;
+  // Without a change of sign along the hull |v| v is a plain polynomial; else the hull is split where the flow turns
+  // round.
   if (at_aft * at_bow >= 0) {
     add_piece(at_aft + at_bow >= 0 ? 1 : -1, v, r, whole, sum.force, sum.moment);
     return sum;

@@ -146,6 +146,8 @@ void Hydrodynamics::list_groups() {
 
 void Hydrodynamics::step_by_groups(double gravity_mps2, const Actors& actors, ThreadPool* threads) {
   if (!groups_listed_) list_groups();
+  // Threads only collect warnings and failures here. They are reported afterwards, so that neither depends on the
+  // number of threads.
   LateWarnings at_begin, late;
   FirstFailure failure;
   const double highest_m = medium_.highest_surface_m();
@@ -174,6 +176,7 @@ void Hydrodynamics::step_by_groups(double gravity_mps2, const Actors& actors, Th
   const BodyMotion motion = wetted.body->motion_for_forces(step_s_);
   around.w_B = motion.R_WB.transpose() * motion.w_WB_W;
   around.motion = motion;
+  // Even the highest crest does not reach it: no wave needs to be evaluated.
   if (motion.p_WB.z() - wetted.radius_m > highest_m) {
     around.water.surface_m = highest_m;
     around.v_B = motion.R_WB.transpose() * (motion.v_WB_W - around.water.velocity_W);

@@ -42,6 +42,7 @@ double ImmersedBodies::add(Body& body, const BodyConfig& config, double gravity_
   added.pieces = pieces_of(body, config, std::numeric_limits<double>::infinity(), warnings);
   if (added.pieces.empty()) return 0;
   find_stiffness(added, config.place, gravity_mps2, warnings);
+  // The stiffness is that of whole parts. For forces long parts are cut, so that a wave is felt at several sections.
   if (medium_.has_waves()) {
     std::vector<Warning> known;
     added.pieces = pieces_of(body, config, section_m, known);
@@ -109,6 +110,7 @@ void ImmersedBodies::remove_group(int group) {
 void ImmersedBodies::step(double gravity_mps2, std::span<const BodyInWater> around, ThreadPool* threads) {
   FirstFailure failure;
   for_each_block(threads, bodies_.size(), [&](std::size_t begin, std::size_t end) {
+    // One for each block of bodies: its lists keep their memory.
     ImmersedDrag drag;
     for (std::size_t i = begin; i < end; ++i) {
       const ImmersedBody& body = bodies_[i];
@@ -126,6 +128,8 @@ void ImmersedBodies::step_body(const ImmersedBody& body, double gravity_mps2, co
                                ImmersedDrag& drag) const {
   const LocalWater& at_origin = around.water;
   const BodyMotion& motion = around.motion;
+  // Nothing of the body is below the highest possible crest. This test spares a world with water most of its dry
+  // bodies.
   if (motion.p_WB.z() - body.radius_m > medium_.highest_surface_m()) return;
   Wrench sum;
   sum.R_WB = motion.R_WB;
@@ -139,6 +143,8 @@ void ImmersedBodies::step_body(const ImmersedBody& body, double gravity_mps2, co
   if (!sum.wet) return;
   add_wind(body, drag, sum);
   if (body.stiff && sum.afloat) add_stiffness(body, at_origin, sum);
+  // The drag is too stiff for the midpoint, where `around` was taken. Backward Euler is stable at any stiffness, but
+  // starts from the motion at the start of the step, so everything is computed once more.
   if (!apply(*body.body, gravity_mps2, drag, sum)) {
     body.body->take_first_order_step(step_s_);
     BodyInWater at_start = around;

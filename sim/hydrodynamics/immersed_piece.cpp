@@ -88,6 +88,7 @@ ImmersedPiece mesh_piece(Mesh mesh, const Vector3d& C) {
 std::shared_ptr<const Mesh> closed_mesh(const PartConfig& part, const std::string& who, PieceMeshes& meshes,
                                         std::optional<std::string>& warning) {
   const std::string path = (std::filesystem::path(part.directory) / part.mesh).string();
+  // Instances of a vehicle share one mesh. An open one is remembered as a null pointer, so that it is not read again.
   const auto [at, added] = meshes.try_emplace({path, part.scale});
   if (added) {
     try {
@@ -215,6 +216,7 @@ std::vector<ImmersedPiece> pieces_of(const PartConfig& part, double max_m, const
     piece.R_BP = R_BG;
     piece.p_BP = part.position_m + R_BG * piece.p_BP;
     piece.added_mass_coefficient = part.added_mass_coefficient;
+    // All of it under a water plane above its highest point.
     piece.whole = piece.immersed({Vector3d::UnitZ(), 2 * piece.radius_m + 1});
   }
   return pieces;

@@ -84,6 +84,7 @@ ImmersedVolume immersed_box(const Vector3d& size_m, const WaterPlane& plane) {
     p[(axis + 2) % 3] = c * half[(axis + 2) % 3];
     return p;
   };
+  // By the divergence theorem the volume under the plane follows from the wet parts of the six faces.
   for (int axis = 0; axis < 3; ++axis) {
     faces.add<4>({corner(axis, 1, -1, -1), corner(axis, 1, 1, -1), corner(axis, 1, 1, 1), corner(axis, 1, -1, 1)});
     faces.add<4>({corner(axis, -1, -1, -1), corner(axis, -1, -1, 1), corner(axis, -1, 1, 1), corner(axis, -1, 1, -1)});
@@ -177,6 +178,7 @@ class RoundSum {
   void add_whole(double low, double high) {
     double volume = std::numbers::pi * radius_ * radius_ * (high - low);
     double moment = volume * (low + high) / 2;
+    // Without the cap that stays dry: the integrals of x^2 and of x^3 over the cut.
     if (cap_) {
       const double a = low - center_, b = high - center_;
       const double cut = std::numbers::pi * (b * b * b - a * a * a) / 3;

@@ -48,6 +48,7 @@ Image8 depth_image(const FloatImage& depth_m) {
   for (const float depth : depth_m.data)
     if (depth > 0 && std::isfinite(depth)) nearest = std::min(nearest, depth), farthest = std::max(farthest, depth);
   Image8 shown(depth_m.width, depth_m.height, 1);
+  // Logarithmic, since the interesting detail is near; black (0) is left to pixels without a depth.
   const float span = farthest > nearest ? std::log(farthest / nearest) : 1;
   for (std::size_t i = 0; i < shown.data.size(); ++i) {
     const float depth = depth_m.data[i];

@@ -101,6 +101,7 @@ class JpegWriter {
   JpegWriter& operator=(const JpegWriter&) = delete;
 
   bool write(const Image8& image, int quality) {
+    // libjpeg reports errors by longjmp() to here.
     if (setjmp(errors.jump) != 0) return false;
     jpeg_mem_dest(&info, &data, &size);
     info.image_width = static_cast<JDIMENSION>(image.width);

@@ -61,7 +61,7 @@ class LevelReader {
     if (png_ != nullptr) info_ = png_create_info_struct(png_);
     if (info_ != nullptr) return;
     png_destroy_read_struct(&png_, &info_, nullptr);
-    throw ImageError("PNG: no memory");
+    throw ImageError("PNG: out of memory");
   }
   ~LevelReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
   LevelReader(const LevelReader&) = delete;

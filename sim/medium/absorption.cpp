@@ -39,6 +39,7 @@ double thorp_dBpkm(double frequency_kHz) {
   return 0.11 * f2 / (1 + f2) + 44 * f2 / (4100 + f2) + 2.75e-4 * f2 + 0.003;
 }
 
+// Francois and Garrison, J. Acoust. Soc. Am. 72 (1982), part II: boric acid, magnesium sulphate and pure water.
 double francois_garrison_dBpkm(double frequency_kHz, const SeaWater& water) {
   const double T = water.temperature_C, S = std::max(water.salinity_psu, 0.0), D = std::max(water.depth_m, 0.0);
   const double c_mps = 1412 + 3.21 * T + 1.19 * S + 0.0167 * D;

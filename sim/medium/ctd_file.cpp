@@ -26,7 +26,7 @@ struct CtdRange {
 /// Limits of the values, as for the rows of a world.
 constexpr std::array<CtdRange, ctd_columns> ctd_limits{
     {{-5, 12000}, {-5, 12400}, {-5, 100}, {0, 400}, {100, 10000}, {1, 20000}}};
-/// What waters have, apart from vents and brine.
+/// Usual values of natural waters, apart from vents and brine.
 constexpr std::array<CtdRange, ctd_columns> ctd_usual{
     {{-5, 12000}, {-5, 12400}, {-5, 45}, {0, 45}, {1350, 1700}, {900, 1300}}};
 
@@ -42,6 +42,7 @@ std::vector<std::string_view> ctd_cells(std::string_view line) {
   while (true) {
     const auto comma = line.find(',');
     std::string_view cell = line.substr(0, comma);
+    // Quotes are dropped: some programs quote the cells of a header.
     const auto begin = cell.find_first_not_of(" \t\r\"");
     cell = begin == cell.npos ? std::string_view{} : cell.substr(begin, cell.find_last_not_of(" \t\r\"") - begin + 1);
     cells.push_back(cell);
@@ -179,7 +180,7 @@ class CtdReader {
   CtdCast cast() const {
     const std::vector<CtdRow> rows = one_cast(lines_);
     if (rows.size() < 2)
-      throw CtdError("needs two rows of rising depth below the header" +
+      throw CtdError("needs two rows of increasing depth below the header" +
                      (missing_.count > 0 ? "; " + missing_text() : ""));
     CtdCast cast;
     for (const CtdRow& row : thinned(rows)) {
@@ -215,6 +216,7 @@ class CtdReader {
   void read_row(int number, const std::vector<std::string_view>& cells) {
     CtdLine line;
     line.number = number;
+    // A row with a missing value is left out as a whole; the profile is interpolated over it.
     for (std::size_t i = 0; i < ctd_columns; ++i) {
       if (!columns_[i]) continue;
       const std::string name = "'" + std::string(ctd_names[i]) + "'";
@@ -232,6 +234,8 @@ class CtdReader {
                              number_text(ctd_limits[i].max) + "]" + got);
       if (!ctd_usual[i].has(value)) unusual_[i].add(number, name, cell);
     }
+    // Casts list pressure or depth; the model needs depth. Rows in the air (negative depth), taken before the probe
+    // is lowered, are dropped.
     if (!columns_[depth]) line.values[depth] = depth_of_pressure_m(line.values[pressure]);
     if (line.depth_m() >= 0) lines_.push_back(line);
   }

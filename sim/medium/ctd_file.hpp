@@ -21,7 +21,7 @@ double depth_of_pressure_m(double pressure_dbar);
 
 /// Profile of water from a cast.
 struct CtdCast {
-  std::vector<WaterLayerConfig> rows;  ///< of rising depth
+  std::vector<WaterLayerConfig> rows;  ///< of increasing depth
   std::vector<std::string> warnings;   ///< about rows that are skipped or unusual, with line and value
 };
 

@@ -120,6 +120,8 @@ CurrentGrid::CurrentGrid(const CurrentConfig& config) : edge_(config.outside == 
       path = (folder / config.east_file).string();
       read_esri(path, (folder / config.north_file).string());
     }
+    // Codes for missing values (9999, -99.9) pass as numbers; a current of that speed would carry vehicles away
+    // without an error.
     for (const auto& v : velocities_mps_)
       if (const double speed = v.cwiseAbs().maxCoeff(); speed > fastest_mps)
         throw TerrainError("has a current of " + number_text(speed) + " m/s, more than 100");
@@ -171,6 +173,7 @@ void CurrentGrid::read_esri(const std::string& east_path, const std::string& nor
     }
   };
   const HeightGrid east = read(east_path), north = read(north_path);
+  // The velocity at a point is read from two files, so both must have the same points.
   if (east.columns != north.columns || east.rows != north.rows || east.cell_m != north.cell_m ||
       east.west_m != north.west_m || east.south_m != north.south_m)
     throw TerrainError("file '" + north_path + "' must have the points of '" + east_path + "'");
@@ -187,6 +190,7 @@ Vector3d CurrentGrid::velocity_W(double x_m, double y_m) const {
   if (!edge_ && !contains(x_m, y_m)) return Vector3d::Zero();
   const double u = std::clamp((x_m - west_m_) / cell_x_m_, 0.0, static_cast<double>(columns_ - 1));
   const double v = std::clamp((y_m - south_m_) / cell_y_m_, 0.0, static_cast<double>(rows_ - 1));
+  // At the last row or column the cell before it is used, with a share of 1.
   const int i = std::min(static_cast<int>(u), columns_ - 2), j = std::min(static_cast<int>(v), rows_ - 2);
   const double a = u - i, b = v - j;
   const auto* at =

@@ -24,7 +24,7 @@ Medium::Medium(const MediumConfig& config, double gravity_mps2, std::uint64_t se
   if (config.water) {
     column_.emplace(*config.water, gravity_mps2);
     if (const auto depth_m = unstable_at_m(*config.water, *column_))
-      log_warn("medium: water: 'profile' is lighter at {:g} m than above: such water would overturn", *depth_m);
+      log_warn("medium: water: 'profile' is lighter at {:g} m than above it: such water would overturn", *depth_m);
     current_.emplace(config.current, config.tides, seed);
     if (config.waves) waves_.emplace(*config.waves, gravity_mps2, seed);
   }
@@ -66,6 +66,7 @@ LocalWater Medium::water_at(const Vector3d& p_W) const {
     water.velocity_W = motion.velocity_W;
     water.acceleration_W = motion.acceleration_W;
   }
+  // Depth counts from the wavy surface: a layer moves up and down with it.
   const double depth_m = water.surface_m - p_W.z();
   water.density_kgpm3 = column_->density_kgpm3(depth_m);
   water.velocity_W += current_->velocity_W(p_W.x(), p_W.y(), depth_m);

@@ -18,6 +18,8 @@ std::optional<double> unstable_at_m(const WaterConfig& water, const WaterColumn&
     const WaterLayerConfig &above = water.profile[i - 1], &here = water.profile[i];
     double lighter_kgpm3 = above.density_kgpm3.value_or(0) - here.density_kgpm3.value_or(0);
     if (water.density == WaterConfig::Density::eos80) {
+      // Both are compared at the same pressure: compression alone makes deep water denser, and does not make it
+      // stable.
       const double p_dbar = column.pressure_Pa(here.depth_m) / dbar_Pa;
       lighter_kgpm3 = eos80_kgpm3(above.temperature_C, above.salinity_psu, p_dbar) -
                       eos80_kgpm3(here.temperature_C, here.salinity_psu, p_dbar) -

@@ -37,6 +37,7 @@ WaterColumn::WaterColumn(const WaterConfig& config, double gravity_mps2)
   const auto fill_to = [&](const Row& next) {
     const Row last = all.back();
     const double gap_m = next.depth_m - last.depth_m;
+    // Close enough for the trapezoidal integration of the pressure below.
     const int pieces = std::max(1, static_cast<int>(std::ceil(gap_m / spacing_m)));
     for (int i = 1; gap_m > 0 && i <= pieces; ++i) {
       const double share = static_cast<double>(i) / pieces;
@@ -84,6 +85,7 @@ WaterColumn::Row WaterColumn::row_at(double depth_m) const {
   const Row &a = below[-1], &b = *below;
   const double share = (depth_m - a.depth_m) / (b.depth_m - a.depth_m);
   const double density = mix(a.density_kgpm3, b.density_kgpm3, share);
+  // Pressure by the trapezoidal rule, exact for a density that is linear in between.
   return {depth_m,
           mix(a.temperature_C, b.temperature_C, share),
           mix(a.salinity_psu, b.salinity_psu, share),

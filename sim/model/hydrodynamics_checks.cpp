@@ -62,6 +62,7 @@ void check_added_mass(const Matrix6d& A, ParamReader& in) {
 
 void check_inertia(const HydrodynamicsConfig& config, ParamReader& in) {
   const Matrix3d& I = config.inertia_kgm2;
+  // Relative to the largest moment: papers round the entries separately.
   if ((I - I.transpose()).cwiseAbs().maxCoeff() > 1e-9 * I.cwiseAbs().maxCoeff()) {
     in.error("inertia_kgm2", "'inertia_kgm2' must be symmetric");
     return;

@@ -135,15 +135,15 @@ void WaterlineConfig::read(ParamReader& in) {
   in.read("heave_pitch_N", heave_pitch_N, any_number(), "couples heave and pitch: force per rad, moment per m");
   in.read("roll_Nmprad", roll_Nmprad, above(0), "stiffness in roll: weight times metacentric height");
   in.read("pitch_Nmprad", pitch_Nmprad, above(0), "stiffness in pitch");
-  in.read("load_kg", load_kg, at_least(0), "load that the trim of the frame does not count");
-  in.read("load_at_m", load_at_m, between(-1000, 1000), "where the load is");
+  in.read("load_kg", load_kg, at_least(0), "payload that the trim of the frame does not include");
+  in.read("load_at_m", load_at_m, between(-1000, 1000), "position of the payload");
 }
 
 void WindageConfig::read(ParamReader& in) {
   in.require("frontal_area_m2");
-  in.read("frontal_area_m2", frontal_area_m2, at_least(0), "over the water, seen from ahead");
+  in.read("frontal_area_m2", frontal_area_m2, at_least(0), "projected above the water, seen from ahead");
   in.require("lateral_area_m2");
-  in.read("lateral_area_m2", lateral_area_m2, at_least(0), "over the water, seen from the side");
+  in.read("lateral_area_m2", lateral_area_m2, at_least(0), "projected above the water, seen from the side");
   in.read("surge_coefficient", surge_coefficient, between(0, 5),
           "surge coefficient of the force ahead; 0.5 to 0.9 for ships");
   in.read("sway_coefficient", sway_coefficient, between(0, 5),
@@ -155,16 +155,15 @@ void WindageConfig::read(ParamReader& in) {
 }
 
 void PublishedQuirks::read(ParamReader& in) {
-  in.read_choice(
-      "added_mass_coriolis", added_mass_coriolis,
-      {{"full", Coriolis::full}, {"without_munk", Coriolis::without_munk}, {"none", Coriolis::none}},
-      "without_munk: added mass couples sway and heave with no turning, as MSS remus100; none: to see the difference");
+  in.read_choice("added_mass_coriolis", added_mass_coriolis,
+                 {{"full", Coriolis::full}, {"without_munk", Coriolis::without_munk}, {"none", Coriolis::none}},
+                 "without_munk: no Munk moment in pitch and yaw, as in MSS remus100; none: to see the difference");
   in.read_choice("current", current, {{"full", Current::full}, {"yaw_only", Current::yaw_only}},
-                 "yaw_only: the current is turned into the body by its yaw alone, as MSS does");
+                 "yaw_only: the current is rotated into the body frame by yaw alone, as in MSS");
   in.read("surge_damping_fade_spm", surge_damping_fade_spm, at_least(0),
           "linear surge damping falls with exp(-this times speed)");
   in.read_choice("fade_speed", fade_speed, {{"water", FadeSpeed::water}, {"ground", FadeSpeed::ground}},
-                 "ground: sqrt(u + v^2) over ground, as MSS remus100");
+                 "ground: sqrt(u + v^2) over ground, as in MSS remus100");
 }
 
 void HydrodynamicsConfig::read(ParamReader& in) {
@@ -189,8 +188,9 @@ void HydrodynamicsConfig::read(ParamReader& in) {
   in.read("volume_m3", volume_m3, above(0), "volume of displaced water; unset: it floats in balance");
   if (buoyancy_N && volume_m3) in.error("volume_m3", "needs either 'buoyancy_N' or 'volume_m3', not both");
   in.read("center_of_buoyancy_m", center_of_buoyancy_m, between(-1000, 1000), "in the body's frame");
-  in.read("hull_height_m", hull_height_m, above(0), "over which it emerges; unset: of a ball of its volume");
-  in.read("hull_length_m", hull_length_m, at_least(0), "over which it emerges when it stands upright");
+  in.read("hull_height_m", hull_height_m, above(0),
+          "height over which it emerges; unset: that of a ball of its volume");
+  in.read("hull_length_m", hull_length_m, at_least(0), "height over which it emerges when it stands upright");
   // Added mass.
   read_matrix<6>(in, "added_mass", added_mass, "6 numbers (diagonal) or 36, row by row; positive as mass");
   std::optional<SpheroidConfig> spheroid;

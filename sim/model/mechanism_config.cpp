@@ -39,6 +39,7 @@ std::vector<const BodyConfig*> MechanismConfig::unconnected() const {
     joined.emplace(joint.bodies[1], joint.bodies[0]);
   }
   std::set<std::string> reached;
+  // Walks along the joints from the first body; what it does not reach would drift away on its own.
   for (std::vector<std::string> next{bodies.front().name}; !next.empty();) {
     const std::string name = std::move(next.back());
     next.pop_back();

@@ -34,6 +34,7 @@ void ObjectConfig::read(ParamReader& in) {
   read_mechanism(in);
   if (in.describing()) return;
   check_keys(in);
+  // An error in `bodies` may leave none; what follows expects the first body.
   if (bodies.empty()) bodies.resize(1);
   if (in.has("bodies")) return;
   bodies.front().name = "body";
@@ -48,7 +49,7 @@ void ObjectConfig::check_keys(ParamReader& in) const {
   for (const char* key : {"joints", "self_collision"})
     if (in.has(key) && !in.has("bodies")) in.error(key, "'" + std::string(key) + "' goes with 'bodies'");
   if (fixed && in.has("bodies"))
-    in.error("fixed", "'fixed' goes with 'parts'; of 'bodies', a joint to 'world' holds one");
+    in.error("fixed", "'fixed' needs 'parts'; one of 'bodies' is held by a joint to 'world'");
   for (const BodyConfig& body : bodies)
     if (body.kinematic)
       in.error("bodies",

@@ -43,6 +43,7 @@ void PhysicsConfig::read(ParamReader& in) {
 
 void ContactConfig::read(ParamReader& in) {
   in.require("between");
+  // Worlds name these two without declaring them.
   in.declare("material", "any");
   in.read_references("between", between, "material", "two materials; any stands for every one");
   if (between.size() != 2) {
@@ -170,6 +171,7 @@ void JointAxisConfig::read(ParamReader& in) {
   in.read("axis", axis, any_number(), "direction in the frame of the vehicle or object, of any length");
   if (axis.norm() < 1e-9) {
     in.error("axis", "'axis' must not be zero");
+    // The axis is normalized later, so after the error any valid direction will do.
     axis = Vector3d::UnitZ();
   }
   in.read("low_stop", low_stop, any_number(), "lowest angle in rad, or position of a slider in m");
@@ -179,7 +181,7 @@ void JointAxisConfig::read(ParamReader& in) {
                              number_text(*high_stop));
   in.read("motor_velocity", motor_velocity, any_number(), "speed of the motor at the start, rad/s or m/s");
   in.read("motor_max_force", motor_max_force, at_least(0), "N m, or N of a slider; 0: no motor until a device sets it");
-  in.read("damping", damping, at_least(0), "effort against the velocity, N m s/rad, or N s/m of a slider");
+  in.read("damping", damping, at_least(0), "effort against the velocity, N m s/rad, or N s/m for a slider");
   in.read("restitution", restitution, between(0, 1), "restitution at the stops");
   in.read("erp", erp, between(0, 1), "fixed, ball: error reduction of the joint, instead of the world's");
   in.read("cfm", cfm, between(0, 1), "softness of the motor");

@@ -118,11 +118,11 @@ std::string error_of_stop(JointType type, double stop);
 /// Parameters of one axis of a joint.
 struct JointAxisConfig {
   Vector3d axis = Vector3d::UnitZ();  ///< in the vehicle frame
-  std::optional<double> low_stop;     ///< rad, or m of a slider
+  std::optional<double> low_stop;     ///< rad, or m for a slider
   std::optional<double> high_stop;
   double motor_velocity = 0;   ///< rad/s, or m/s of a slider
   double motor_max_force = 0;  ///< N m, or N of a slider; 0: no motor
-  double damping = 0;          ///< N m s/rad, or N s/m of a slider
+  double damping = 0;          ///< N m s/rad, or N s/m for a slider
   std::optional<double> restitution, cfm, stop_erp, stop_cfm, fudge_factor, suspension_erp, suspension_cfm, erp;
 
   void read(ParamReader& in);

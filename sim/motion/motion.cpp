@@ -199,6 +199,7 @@ const MotionPose* JointMotion::find_pose(const std::string& pose) const {
 
 JointValues JointMotion::values_of(const MotionKey& key) const {
   JointValues values;
+  // A key sets all joints of its pose, and then its own values.
   if (const MotionPose* pose = find_pose(key.pose)) values = pose->joints;
   for (const auto& [joint, value] : key.joints) {
     const auto same =

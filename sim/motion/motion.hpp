@@ -12,7 +12,7 @@
 
 namespace sim {
 
-/// Value of each joint by its name, in the order of the file: rad, m of a slider, or the intensity of a light.
+/// Value of each joint by its name, in the order of the file: rad, m for a slider, or the intensity of a light.
 using JointValues = std::vector<std::pair<std::string, double>>;
 
 /// Pose of a motion file, to which its keys refer by name.
@@ -91,7 +91,7 @@ struct JointMotion {
 
   /// Reads a motion file, and its file of frames.
   void read(ParamReader& in);
-  /// As read(), without the version of the file format: for a motion within another file.
+  /// Like read(), without the version of the file format: for a motion within another file.
   void read_keys(ParamReader& in);
 
   /// Returns the values of a key by joint: those of its pose, then its own.
@@ -113,7 +113,7 @@ constexpr std::size_t max_motion_keys = 1'000'000;
 
 /// Reads a motion file.  Throws ConfigError with all errors.
 JointMotion load_motion(const std::string& path);
-/// As load_motion, with the rules and the collection of errors of the reader of another file.
+/// Like load_motion(), with the rules and the collection of errors of the reader of another file.
 JointMotion load_motion(const std::string& path, Diagnostics& diagnostics);
 
 /// Returns the text of a motion file that reads to this motion.  Values in degrees keep 12 digits; those in rad are

@@ -106,6 +106,7 @@ class FramesParser {
     if (!read_number(cells[0], t_s)) return false;
     if (t_s < 0 || t_s > max_motion_s)
       return fail(cells[0].column, "'t_s' must be >= 0 and <= 86400, got " + number_text(t_s));
+    // All tracks have the same times, so the first one tells whether time increases.
     const std::vector<TrackKey>& before = tracks_.front().keys;
     if (!before.empty() && !(t_s > before.back().at_s))
       return fail(cells[0].column,

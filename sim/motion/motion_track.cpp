@@ -48,6 +48,7 @@ double MotionTrack::value_at(double t_s) const {
   if (next == keys.begin()) return keys.front().value;
   if (next == keys.end()) return keys.back().value;
   const TrackKey& before = *(next - 1);
+  // Times near a key count as the key, so that frames at keys have exactly its value in spite of rounding.
   if (next->at_s - t_s < same_time_s) return next->value;
   if (t_s - before.at_s < same_time_s) return before.value;
   const double s = (t_s - before.at_s) / (next->at_s - before.at_s);

@@ -24,7 +24,7 @@ inline const ChoiceWords<Easing> easing_words{{"linear", Easing::linear},
                                               {"spline", Easing::spline},
                                               {"step", Easing::step}};
 
-/// Value of a joint at a time of a motion: rad, or m of a slider.
+/// Value of a joint at a time of a motion: rad, or m for a slider.
 struct TrackKey {
   double at_s = 0;
   double value = 0;

@@ -37,6 +37,7 @@ void put_on_sphere(dGeomID sphere, dContactGeom& contact) {
 int find_contacts(dGeomID first, dGeomID second, int max_contacts, dContactGeom* contacts, int skip_bytes) {
   static std::mutex meshes;
   std::unique_lock<std::mutex> lock(meshes, std::defer_lock);
+  // ODE keeps temporal data of triangle meshes in the geoms, so collisions with them are not thread-safe.
   if (dGeomGetClass(first) == dTriMeshClass || dGeomGetClass(second) == dTriMeshClass) lock.lock();
   const int count = dCollide(first, second, max_contacts, contacts, skip_bytes);
   const bool is_first = dGeomGetClass(first) == dSphereClass;

@@ -143,6 +143,7 @@ dMass part_mass(const PartConfig& part, const CollisionMesh* mesh, const std::st
   mass = unit_density_mass(part, mesh);
   if (!(mass.mass > 0)) throw_config_error(part.place, who, "encloses no volume");
   dMassAdjust(&mass, part.mass_kg ? *part.mass_kg : *part.density_kgpm3 * mass.mass);
+  // The inertia of the shape is about its own axes at its center; it moves to the frame of the body.
   dMatrix3 R;
   to_ode(rotation_from_rpy(part.rpy_rad), R);
   dMassRotate(&mass, R);

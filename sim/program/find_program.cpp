@@ -64,6 +64,8 @@ std::vector<std::string> declared_programs(const std::string& folder) {
 
 FoundProgram find_program(const std::string& program, const std::vector<std::string>& folders, const FileAccess* files,
                           const SourcePlace& place, const std::string& who, Diagnostics& diagnostics) {
+  // A name without a slash is searched in the folders of programs only, not in the working folder, which differs from
+  // user to user.
   if (program.find('/') == std::string::npos) {
     for (const std::string& folder : folders) {
       const std::string path = (fs::path(folder) / program).string();
@@ -73,6 +75,8 @@ FoundProgram find_program(const std::string& program, const std::vector<std::str
     return {};
   }
   const std::string file = program + declaration_ending;
+  // A world file may come from elsewhere. The declaration is read, and errors quote it, so that it falls under the
+  // rule for all files that a world names.
   if (files != nullptr && place.origin != Origin::command_line && !files->may_read(file)) {
     diagnostics.error(
         place, who,
@@ -111,7 +115,7 @@ ProgramDeclaration read_declaration_file(const std::string& path, Diagnostics& d
       name.substr(0, name.size() - std::min(name.size(), std::string_view(declaration_ending).size()));
   if (diagnostics.ok() && name == program + declaration_ending && declaration.program != program)
     diagnostics.error(whole, "",
-                      "'program' must be '" + shortened(printable(program)) + "', as the file is called, got '" +
+                      "'program' must be '" + shortened(printable(program)) + "', the name of the file, got '" +
                           shortened(printable(declaration.program)) + "'");
   return declaration;
 }

@@ -191,6 +191,8 @@ void append_words(const ArgDeclaration& arg, const ConfigNode& value, const std:
       break;
   }
   if (diagnostics.lines().size() != errors) return;
+  // `--name=value` in one word: a negative number or a text that begins with '-' as a separate word would be taken
+  // for an option.
   std::string word = option_of(arg.name) + "=" + text;
   if (word.size() > max_word)
     return diagnostics.error(value.place, who,
@@ -223,6 +225,7 @@ std::string channel_of(const ProgramDeclaration& declaration, const ConfigNode& 
     const std::string text = text_of_arg(declaration, args, channel.substr(open + 1, close - open - 1));
     if (text.empty()) return {};
     channel.replace(open, close + 1 - open, text);
+    // An inserted text may contain braces, which are not placeholders.
     open += text.size();
   }
   return channel;

@@ -40,11 +40,11 @@ bool is_arg_name(const std::string& name) {
 void check_keys_of_type(ParamReader& in, const ArgDeclaration& arg) {
   const std::string type = "'type: " + std::string(word_of(arg_type_words, arg.type)) + "'";
   for (const char* key : {"min", "max"})
-    if (in.has(key) && !has_numbers(arg.type)) in.error(key, "'" + std::string(key) + "' does not go with " + type);
-  if (in.has("choices") && arg.type != ArgType::choice) in.error("choices", "'choices' does not go with " + type);
+    if (in.has(key) && !has_numbers(arg.type)) in.error(key, "'" + std::string(key) + "' does not apply to " + type);
+  if (in.has("choices") && arg.type != ArgType::choice) in.error("choices", "'choices' does not apply to " + type);
   if (!in.has("choices") && arg.type == ArgType::choice) in.error(type + " needs 'choices'");
   if (in.has("choices") && arg.choices.empty()) in.error("choices", "'choices' must name a word");
-  if (in.has("columns") && !has_columns(arg.type)) in.error("columns", "'columns' does not go with " + type);
+  if (in.has("columns") && !has_columns(arg.type)) in.error("columns", "'columns' does not apply to " + type);
   if (!in.has("columns") && has_columns(arg.type)) in.error(type + " needs 'columns', such as [x, y]");
   if (in.has("columns") && (arg.columns.empty() || arg.columns.size() > max_columns))
     in.error("columns", "'columns' must have 1 to " + std::to_string(max_columns) + " names, got " +
@@ -196,7 +196,7 @@ void ArgDeclaration::read(ParamReader& in) {
   check_keys_of_type(in, *this);
   const ConfigNode* node = in.child("default");
   if (node == nullptr) return;
-  if (required) return in.error("default", "'default' does not go with 'required: true'");
+  if (required) return in.error("default", "'default' cannot be combined with 'required: true'");
   initial = *node;
   ArgDeclaration as_default = *this;
   as_default.name = "default";
@@ -213,6 +213,8 @@ void ProgramDeclaration::read(ParamReader& in) {
   in.require("program");
   in.read("program", program, "file name of the program; the declaration is NAME.args.yaml");
   in.read("meaning", meaning, "description in one sentence");
+  // An absent list means that the channels are unknown, an empty one that there are none: only the latter can be
+  // checked.
   const auto read_channels = [&in](const char* key, std::optional<std::vector<std::string>>& channels, const char* of) {
     std::vector<std::string> list;
     in.read(key, list, of);

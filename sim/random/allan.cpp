@@ -20,6 +20,7 @@ std::vector<double> running_sum(std::span<const double> samples) {
 }
 
 AllanPoint point(const std::vector<double>& sums, double dt_s, std::size_t m) {
+  // Overlapping Allan deviation from the integral of the data (IEEE Std 952).
   const std::size_t count = sums.size() - 2 * m;
   double squares = 0;
   for (std::size_t k = 0; k < count; ++k) {
@@ -28,6 +29,7 @@ AllanPoint point(const std::vector<double>& sums, double dt_s, std::size_t m) {
   }
   const auto length = static_cast<double>(m);
   const double clusters = static_cast<double>(sums.size() - 1) / length;
+  // Approximate relative error with this many independent clusters (IEEE Std 952-1997, annex C).
   return {length * dt_s, std::sqrt(squares / (2 * length * length * static_cast<double>(count))),
           1 / std::sqrt(2 * (clusters - 1))};
 }

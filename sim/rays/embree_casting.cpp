@@ -102,7 +102,7 @@ void EmbreeScene::find_occluded(const RTCOccludedFunctionNArguments* arguments) 
       RTCRayN_tfar(arguments->ray, n, i) = -std::numeric_limits<float>::infinity();
 }
 
-/// What the rays of a bundle may hit: single shapes, and layers to search by their trees.
+/// Targets of the rays of a bundle: single shapes, and layers to search by their trees.
 struct EmbreeScene::Targets {
   Targets(const EmbreeScene& scene, const RayFilter& filter_, const RayBundle& bundle)
       : filter(filter_), planes(scene.planes_.shapes) {
@@ -113,14 +113,15 @@ struct EmbreeScene::Targets {
       if (!test || !add_shapes(layer->shapes, stops)) add_tree(*layer, bundle);
     }
   }
-  /// Of a bundle of a fan, whose targets were found before.
+  /// Targets of a bundle of a fan, which were found before.
   Targets(const FanTargets& fan, const RayBundle& bundle);
 
   RayFilter filter;
   std::span<const RayShape> planes;
   std::array<const RayShape*, 3 * max_few> shapes;
   int shape_count = 0;
-  /// In order of the cost of intersections: terrain is last, and is cheaper for rays that other hits have shortened.
+  /// Layers in order of the cost of intersections: terrain is last, and is cheaper for rays that other hits have
+  /// shortened.
   std::array<const Layer*, 3> trees;
   int tree_count = 0;
 
@@ -154,19 +155,21 @@ struct EmbreeScene::Targets {
   }
 };
 
-/// What the rays of a fan may hit: shapes at its height and within its range.
+/// Targets of the rays of a fan: shapes at its height and within its range.
 struct EmbreeScene::FanTargets {
   FanTargets(const EmbreeScene& scene, const RayFilter& filter_, const Fan& fan)
       : filter(filter_), planes(scene.planes_.shapes), layers{&scene.moving_, &scene.fixed_, &scene.terrain_} {
     const Vector3d from_W = fan.X_WS.translation(), up_W = fan.X_WS.linear().col(2);
     for (std::size_t i = 0; i < layers.size(); ++i) {
       constexpr std::size_t max_tested = 256;
+      // Testing every shape pays for few shapes only; a layer with more uses its tree.
       listed[i] = layers[i]->shapes.size() <= max_tested;
       if (!listed[i]) continue;
       for (const RayShape& shape : layers[i]->shapes) {
         if (!shape.stops(filter)) continue;
         const Vector3d to_W = shape.center_W() - from_W;
         const double reach_m = std::sqrt(shape.misses_beyond_m2), far_m = fan.range_max_m + reach_m;
+        // The shape must cross the plane of the fan, within range.
         if (std::abs(to_W.dot(up_W)) > reach_m || to_W.squaredNorm() > far_m * far_m) continue;
         listed[i] = counts[i] < max_listed;
         if (!listed[i]) break;
@@ -204,6 +207,7 @@ void EmbreeScene::cast_packet(RayPacket& rays, unsigned lanes, const Targets& ta
 unsigned EmbreeScene::blocked_packet(RayPacket& rays, unsigned lanes, const Targets& targets) {
   unsigned blocked = 0;
   targets.for_each_shape([&](const RayShape& shape) {
+    // Rays that are blocked already need no further test.
     if ((lanes & ~blocked) != 0) blocked |= blocked_by(shape, rays, lanes & ~blocked);
   });
   for (int i = 0; i < targets.tree_count && (lanes & ~blocked) != 0; ++i) {
@@ -229,6 +233,7 @@ RayHit EmbreeScene::hit_of(const RayPacket& rays, int lane) const {
   } else {
     hit.normal_W = normal_at(shape, rays.origin_W(lane) + hit.range_m * direction_W);
   }
+  // Back faces are seen, too, from inside of a shape: the normal always points to the sensor.
   if (hit.normal_W.dot(direction_W) > 0) hit.normal_W = -hit.normal_W;
   return hit;
 }

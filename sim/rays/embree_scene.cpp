@@ -110,6 +110,7 @@ void EmbreeScene::choose_origin(Layer& layer) {
     layer.half_width_m += reach_m;
     widest_m = std::max(widest_m, reach_m);
   }
+  // Embree computes in single precision, so a layer has its origin among its shapes.
   layer.origin_W = (low + high) / 2;
   layer.radius_m = (high - low).norm() / 2 + widest_m;
 }

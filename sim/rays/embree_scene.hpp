@@ -40,7 +40,7 @@ class EmbreeScene final : public WorldScene {
   struct Targets;
   struct FanTargets;
 
-  /// For so few shapes a tree is slower than a test of each.
+  /// Number of shapes up to which testing each one is faster than a tree.
   static constexpr int max_few = 4;
 
   /// Shapes in one bounding volume hierarchy (tree).

@@ -62,6 +62,7 @@ void OdeScene::add_part(int number, const ScenePart& part) {
 void OdeScene::close_group(int group) {
   Cluster cluster{std::move(open_[group]), group, 0};
   open_[group].clear();
+  // Moving parts of a group stay close together and share a box; fixed ones may be far apart and get one each.
   for (const int part : cluster.parts) cluster.categories |= parts_[part].category;
   if (!cluster.parts.empty()) add_cluster(0, std::move(cluster));
 
@@ -128,6 +129,7 @@ void OdeScene::place_triangles(Part& part) {
 }
 
 void OdeScene::refresh(Layer& layer, std::uint64_t moves) const {
+  // The boxes are computed once per change of poses, by the first ray that needs them.
   if (layer.seen == moves) return;
   layer.seen = moves;
   if (&layer == &layers_[0] && moves_.bring_parts) moves_.bring_parts();
@@ -174,6 +176,7 @@ void OdeScene::find_candidates(const AlignedBox& around, const RayFilter& filter
       const double nearest = distance(layers_[layer].grid.box(index), from_W);
       if (nearest <= range_max_m) candidates_.push_back({nearest, layer, index});
     });
+  // From near to far, with a tie-break that does not depend on the order in the grid.
   std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
     if (a.nearest_m != b.nearest_m) return a.nearest_m < b.nearest_m;
     return a.layer != b.layer ? a.layer < b.layer : a.cluster < b.cluster;
@@ -288,6 +291,7 @@ void OdeScene::FanSearch::try_part(int part) {
     for (int i = first; i <= last; ++i) {
       if (hits[i].range_m < nearest_m) continue;
       RayHit hit = hits[i];
+      // A miss has an infinite range, which ODE's ray cannot have.
       hit.range_m = std::min(hit.range_m, fan.range_max_m);
       if (scene.hit(part, p_WS, fan.X_WS.linear() * directions_S[i], hit)) hits[i] = hit;
     }

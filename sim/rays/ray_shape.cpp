@@ -113,6 +113,7 @@ SHOAL_INLINE double range_to(const RayShape& shape, const RayPacket& rays, int l
     const double height = shape.axes[6] * (rays.origin[0][lane] - shape.center[0]) +
                           shape.axes[7] * (rays.origin[1][lane] - shape.center[1]) +
                           shape.axes[8] * (rays.origin[2][lane] - shape.center[2]);
+    // A ray parallel to the plane divides by 0. The infinity or NaN fails the comparison and counts as no hit.
     const double rate = shape.axes[6] * rays.direction[0][lane] + shape.axes[7] * rays.direction[1][lane] +
                         shape.axes[8] * rays.direction[2][lane];
     const double range = -height / rate;
@@ -169,7 +170,7 @@ SHOAL_INLINE void transform_all_to(const RayShape& shape, const RayPacket& rays,
     }
 }
 
-/// As passes_by() for all lanes.
+/// Like passes_by(), for all lanes.
 SHOAL_INLINE unsigned near_lanes_of(const RayShape& shape, const RayPacket& rays) {
   double over_m2[RayPacket::size];
   const auto& c = shape.center;
@@ -244,6 +245,7 @@ Vector3d RayShape::half_extents_W() const {
     case Kind::capsule:
       return turned(0, 0, size[2]) + Vector3d::Constant(size[0]);
     case Kind::cylinder:
+      // The disc at each end reaches sqrt(1 - a^2) of its radius along a world axis whose cosine with the axis is a.
       return turned(0, 0, size[2]) + size[0] * (1 - axis_W(2).array().square()).max(0).sqrt().matrix();
     default:
       return turned(size[0], size[1], size[2]);
@@ -324,6 +326,7 @@ RayShape make_ray_shape(int number, const ScenePart& part, const TriangleScene* 
 }
 
 void follow(RayShape& shape, dGeomID geom) {
+  // ODE stores a plane as n x = d in the world frame, without a position.
   if (shape.kind == Kind::plane) {
     dVector4 plane;
     dGeomPlaneGetParams(geom, plane);
@@ -340,6 +343,7 @@ void follow(RayShape& shape, dGeomID geom) {
   for (int axis = 0; axis < 3; ++axis)
     for (int i = 0; i < 3; ++i) shape.axes[3 * axis + i] = R[4 * i + axis];
   if (shape.kind != Kind::mesh) return;
+  // The shape is centered on the bounding box of the mesh, not on its origin, for the box test before the triangles.
   const Vector3d c = shape.mesh->center_m();
   for (int i = 0; i < 3; ++i)
     shape.center[i] += shape.axes[i] * c.x() + shape.axes[3 + i] * c.y() + shape.axes[6 + i] * c.z();

@@ -42,6 +42,7 @@ void ClientMessages::take(std::vector<MessageGate::Delivery>& messages) {
     by_key_[{each.channel, crc}].insert(arrival);
     strays_.emplace(arrival, Stray{std::move(each), crc});
     if (of_channel.size() > max_of_channel) drop_oldest(*of_channel.begin());
+    // A client that publishes outside of its ticks must not fill the memory; the oldest message goes first.
     while (stray_bytes_ > max_bytes) drop_oldest(strays_.begin()->first);
   }
   messages.clear();

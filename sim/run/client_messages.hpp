@@ -50,7 +50,7 @@ class ClientMessages {
   void order(std::vector<MessageGate::Delivery>& messages);
   /// Discards what has arrived. Messages that clients have listed and that are still in transit are dropped on arrival.
   void clear();
-  /// Drops what a client listed for an abandoned tick, also when it arrives later.
+  /// Drops what a client listed for an abandoned tick, even when it arrives later.
   void drop(const std::string& client, const std::vector<NamedMessage>& named);
   /// Drops the unlisted messages that have arrived: they may be from a client without a list, for an abandoned tick.
   void drop_unnamed();

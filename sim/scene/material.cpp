@@ -66,6 +66,7 @@ void SoundSurface::read(ParamReader& in) {
 void MaterialConfig::read(ParamReader& in) {
   in.require("name");
   in.read("name", name, "name of the material");
+  // In contacts 'any' stands for every material.
   if (name == "any") in.error("name", "'any' stands for every material and cannot be a name");
   in.read("color", color, "color in images and viewers, #rrggbb; a part's own color has precedence");
   if (!in.describing() && !color.empty()) check_color(in, "color", color);

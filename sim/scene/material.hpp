@@ -27,7 +27,7 @@ struct TextureConfig {
 
 /// Reflection of a laser beam by a surface.
 struct LaserSurface {
-  double reflectivity = 0.5;  ///< share of the power reflected diffusely (Lambert); white wall 0.8, tyre 0.05
+  double reflectivity = 0.5;  ///< share of the power reflected diffusely (Lambert); white wall 0.8, tire 0.05
   double gloss = 0;           ///< share of it in specular reflection, which returns only near normal incidence
   void read(ParamReader& in);
 };

@@ -57,8 +57,8 @@ struct Fan {
   double range_max_m = 0;
 };
 
-/// Interface for ray casting against every part of the world at its pose after the last step.  Of two parts hit at the
-/// same range the one with the lower number is reported, so that results are reproducible.
+/// Interface for ray casting against every part of the world at its pose after the last step.  If two parts are hit
+/// at the same range the one with the lower number is reported, so that results are reproducible.
 class Scene {
  public:
   virtual ~Scene() = default;

@@ -118,6 +118,7 @@ std::vector<std::string> names_added_by(const ConfigNode& actions) {
   const auto append = [&](const ConfigNode& node) {
     for (std::string& name : names_added_by(node)) names.push_back(std::move(name));
   };
+  // Actions can be nested in lists of others, such as choices.
   for (const ConfigNode& item : actions.items) append(item);
   for (const ConfigNode::Entry& entry : actions.entries) {
     const ConfigNode* object = entry.key == "add" ? entry.value.find("object") : nullptr;

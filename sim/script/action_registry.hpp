@@ -20,7 +20,7 @@ struct ActionKind {
 
   /// Returns the keys of its map, the main one first.
   std::vector<ParamInfo> keys() const;
-  /// Returns its word with its keys.
+  /// Returns the word of the action and its keys.
   ParamInfo info() const;
 };
 

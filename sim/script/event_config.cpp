@@ -106,6 +106,7 @@ void EventConfig::read(ParamReader& in) {
   in.read("delay_s", delay_s, between(0, 1e9), "delay between firing and the actions");
   in.read_or_word("times", times, at_least(1), {"unlimited"},
                   "maximum number of firings; with 'at' at most the number of its times");
+  // 'unlimited' of a list of times means each of them once.
   if (times == 0) times = static_cast<std::int64_t>(at_s.size());
   in.read("probability", probability, between(0, 1), "probability of firing");
   in.require("do");

@@ -33,6 +33,7 @@ Path Path::through(PathKind kind, std::vector<Vector3d> points_W, bool closed, s
   Path path;
   path.kind_ = kind;
   path.R_WO_ = R_WO;
+  // A repeated first point would make a last segment without length and direction.
   if (closed && points_W.front() == points_W.back()) points_W.pop_back();
   if (kind == PathKind::spline) {
     path.add_spline(points_W, closed);

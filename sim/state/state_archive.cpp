@@ -74,6 +74,7 @@ void StateArchive::end_part() {
     if (keeps_parts_) parts_.push_back({part_, part_hash_.value()});
     total_.add(part_hash_.value());
   } else if (saving()) {
+    // The length is known now, and fills the gap that was left before the part.
     const std::uint64_t length = output_.size() - part_start_;
     std::memcpy(output_.data() + part_start_ - sizeof length, &length, sizeof length);
   } else if (at_ != part_end_) {

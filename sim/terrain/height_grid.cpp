@@ -140,7 +140,8 @@ void check_heights(const HeightGrid& grid) {
     if (!std::isfinite(height_m)) throw TerrainError("has a height that is not finite");
   const double span_m = grid.highest_m() - grid.lowest_m();
   if (span_m > 20'000)
-    throw TerrainError("spans " + number_text(span_m) + " m of height, more than the earth does: other units?");
+    throw TerrainError("spans " + number_text(span_m) + " m of height, more than the earth does: wrong units?");
+  // Heights in centimeters over cells in meters are nearly vertical everywhere; a cliff is only here and there.
   const double too_steep = std::tan(degrees_to_radians(89)) * grid.cell_m;
   std::size_t steep = 0;
   for (int j = 0; j + 1 < grid.rows; ++j)

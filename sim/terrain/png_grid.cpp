@@ -31,6 +31,7 @@ HeightGrid read_png_grid(const std::string& path, double cell_m, double low_m, d
   grid.cell_m = cell_m;
   grid.heights_m.resize(levels.data.size());
   std::size_t next = 0;
+  // Images begin in the north, grids in the south.
   for (int row = grid.rows - 1; row >= 0; --row)
     for (int column = 0; column < grid.columns; ++column)
       grid.at(column, row) = low_m + (high_m - low_m) * levels.data[next++] / 65535.0;

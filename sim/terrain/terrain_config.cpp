@@ -151,7 +151,7 @@ void TerrainConfig::read(ParamReader& in) {
   check_wavelength(in, *this);
   if (is_read_from_file(source) && file.empty())
     in.error("terrain of source " + std::string(word_of(source_words, source)) + " needs the key 'file'");
-  if (origin == Origin::map && source != Source::ascii) in.error("origin", "'origin' map is for source ascii");
+  if (origin == Origin::map && source != Source::ascii) in.error("origin", "'origin: map' needs 'source: ascii'");
   if (in.has("map_origin_m") && origin != Origin::map) in.error("map_origin_m", "'map_origin_m' needs 'origin: map'");
   if (source == Source::png && height_min_m >= height_max_m) in.error("'height_max_m' must be above 'height_min_m'");
   if (areas.size() > 255) in.error("areas", "'areas' must be at most 255, got " + std::to_string(areas.size()));

@@ -45,7 +45,7 @@ void ActingVehicles::add(const Vehicle& vehicle) {
 }
 
 void ActingVehicles::remove(const Vehicle& vehicle) {
-  // From the end, since vehicles that come and go are the last ones.
+  // Search from the end: vehicles that come and go are the last ones.
   const auto found =
       std::find_if(vehicles_.rbegin(), vehicles_.rend(), [&](const Range& range) { return range.vehicle == &vehicle; });
   if (found == vehicles_.rend()) return;
@@ -73,6 +73,7 @@ bool ActingVehicles::begin_by_groups() {
   }
   failure_.emplace();
   acted_.assign(vehicles_.size(), false);
+  // Groups can be stepped one by one only if no vehicle acts on the body of another.
   return std::all_of(vehicles_.begin(), vehicles_.end(), [this](const Range& vehicle) { return acts_alone(vehicle); });
 }
 

@@ -56,6 +56,7 @@ void DeviceTable::set_free(std::vector<int> free, std::int64_t size) {
     return number < 0 || number >= size ||
            (static_cast<std::size_t>(number) < devices_.size() && at(number) != nullptr);
   };
+  // A snapshot may be damaged: numbers in use and free ones must make up all numbers, each once.
   if (places < devices_.size() || there + free.size() != places ||
       std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end() || std::any_of(free.begin(), free.end(), taken))
     throw SnapshotError("the snapshot has an invalid value: numbers of devices");

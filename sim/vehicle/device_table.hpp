@@ -29,7 +29,7 @@ class DeviceTable {
   /// Returns the flag that is set when a message arrives in the mailbox of the device.
   std::atomic<bool>* arrival_flag(int number) { return arrival_flags_.of(number).get(); }
 
-  // For the reconstruction of a world from its journal.
+  // Used to reconstruct a world from its journal.
   const std::vector<int>& free_numbers() const { return free_; }
   /// Sets the numbers of the devices that are added next.  Throws std::out_of_range when one is in use.
   void prescribe(const std::vector<int>& numbers);

@@ -25,7 +25,7 @@ Mechanism::Mechanism(int group, const MechanismConfig& config)
 
 void Mechanism::place(PhysicsWorld& physics, const Pose& X_WV) const {
   const Pose X_WB = base_pose(X_WV);
-  // With the ends of joints that are in the world.
+  // The ends of joints that are in the world count, too.
   if (bodies_.size() > 1 || !joints_.empty()) physics.move_group(group_, X_WB * base().X_WB().inverse());
   base().set_pose(X_WB);  // without rounding
   base().set_velocity_W(Vector3d::Zero(), Vector3d::Zero());

@@ -17,7 +17,7 @@ class PhysicsWorld;
 /// Bodies of a vehicle or an object in the world, and the joints between them, by name: a group of the physics.
 class Mechanism {
  public:
-  /// Makes one without bodies and joints, which are added in the order of `config`.
+  /// Makes a mechanism without bodies and joints, which are added in the order of `config`.
   Mechanism(int group, const MechanismConfig& config);
 
   int group() const { return group_; }

@@ -26,7 +26,7 @@ class MountedDevice::Outlet final : public Publisher {
     hold_ = hold;
   }
 
-  /// Also stores messages published from now on in `copies`; null: stops.
+  /// Stores messages published from now on in `copies` as well; null: stops.
   void copy_to(std::vector<Bytes>* copies) { copies_ = copies; }
 
   void publish(std::span<const std::byte> payload) override {
@@ -72,6 +72,8 @@ MountedDevice::MountedDevice(Vehicle& vehicle, const DeviceConfig& config, Devic
       X_BS_(config.X_BS()),
       host_(host),
       full_name_(vehicle.name() + "/" + config.name),
+      // Two streams: drawing the loss and delay of messages must not change the noise, so that a run with another
+      // link keeps its errors.
       noise_random_(host.seed, full_name_),
       link_random_(host.seed, full_name_ + "#link"),
       number_(number),
@@ -198,6 +200,7 @@ bool MountedDevice::works() const {
 
 void MountedDevice::receive(Time now, std::span<const std::byte> payload, std::vector<std::string>* bad) {
   if (!works() || faults_.silent()) return;
+  // A stuck actuator keeps its last command; after an emergency stop it gets none until the release.
   if (type_.is_actuator() && (vehicle_.systems().estopped || faults_.stuck())) return;
   wake();
   try {
@@ -226,7 +229,9 @@ bool Acting::take_command(Time now) {
 void Acting::act(Time now, double step_s) {
   const bool works = always_on || systems->powered;
   if (is_actuator) {
+    // Never commanded is not stale: the actuator is in its initial state.
     const bool stale = watchdog.count() > 0 && last_command.count() >= 0 && !stuck && now - last_command > watchdog;
+    // Once only: an actuator may move on its own in its safe state.
     if ((stale || systems->estopped || !works) && !safe) {
       actuator->make_safe(safe_state);
       safe = true;

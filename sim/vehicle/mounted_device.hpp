@@ -96,7 +96,7 @@ class MountedDevice : public VisitedInSteps {
   std::atomic<bool>* awake() const { return type_.sleeps ? awake_.get() : nullptr; }
   /// Returns the data of its actuator; their `actuator` is null when it has none.
   Acting* acting() const { return acting_.get(); }
-  /// Returns its mailbox; null when it receives no messages.
+  /// Returns the mailbox of its commands; null if it receives no messages.
   Mailbox* mailbox() const { return mailbox_.get(); }
   int number() const { return number_; }
   const std::string& full_name() const { return full_name_; }
@@ -111,7 +111,7 @@ class MountedDevice : public VisitedInSteps {
   };
   std::optional<Lack> lack() const;
   const Vehicle& vehicle() const { return vehicle_; }
-  /// For tests and tools.
+  /// Used by tests and tools.
   const Sensor* sensor() const { return sensor_; }
   const Actuator* actuator() const { return built_.actuator.get(); }
   void visit_state(StateArchive& archive);

@@ -16,7 +16,7 @@ inline constexpr std::array<const char*, 10> step_stage_names = {
     "messages", "medium", "act", "hydrodynamics", "script", "physics", "events", "rays", "sensors", "hash"};
 
 /// Times of the stages since the start of the measurement, in CPU time of the thread that steps: close to the wall
-/// time, also where it works with others, but without what other programs take.
+/// time, even where it works with others, but without what other programs take.
 struct StageTimes {
   StageTimes();
 

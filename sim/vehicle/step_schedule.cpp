@@ -68,6 +68,8 @@ void erase_number(std::vector<std::uint32_t>& ascending, std::uint32_t number) {
 void StepSchedule::add(MountedDevice& device, DeviceTable& devices) {
   const auto number = static_cast<std::uint32_t>(device.number());
   if (device.mailbox()) {
+    // By number, so that messages are taken in the same order after a snapshot, whatever was added and removed before
+    // it.
     const auto at = listening_.empty() || listening_.back().number < number
                         ? listening_.end()
                         : std::partition_point(listening_.begin(), listening_.end(),
@@ -123,6 +125,8 @@ void StepSchedule::plan_again(const MountedDevice& device) {
 void StepSchedule::take_messages(const StepClock& clock) {
   taking_.clear();
   std::size_t alone = 0;
+  // Devices mark arrivals in a flag, and the cheap load comes first: most of thousands of devices have no message in
+  // a step.
   for (const Listening& listening : listening_) {
     if (!listening.messages->load(std::memory_order_relaxed) ||
         !listening.messages->exchange(false, std::memory_order_acquire))
@@ -135,6 +139,8 @@ void StepSchedule::take_messages(const StepClock& clock) {
       if (taking_[i].alone) taking_[i].device->take_messages(clock.now(), clock.step_number, &taking_[i].bad);
   };
   const bool shared = alone >= min_shared;
+  // Below some number of devices starting the threads costs more than it saves. Warnings of threads are kept in `bad`
+  // and given in the order of the devices.
   if (shared) for_each_block(threads_.get(), taking_.size(), take_alone);
   for (const Taking& taking : taking_)
     if (shared && taking.alone)
@@ -152,6 +158,7 @@ void StepSchedule::advance_clocks(const StepClock& clock, const Medium& medium) 
     if (clock.now() < clocked.due) continue;
     VehicleClock& own = clocked.vehicle->clock();
     std::optional<double> temperature_C;
+    // The temperature is costly, and only an oscillator that depends on it asks.
     if (own.wants_temperature(clock.now())) {
       const Vector3d p_W = clocked.vehicle->X_WV().translation();
       if (medium.in_water(p_W)) temperature_C = medium.temperature_C(p_W);

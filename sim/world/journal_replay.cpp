@@ -17,7 +17,7 @@
 namespace sim {
 
 void JournalReplay::replay(std::span<const std::byte> bytes, std::int64_t last_step) {
-  journal_.start_again({});  // also when it cannot be read: the world is then as in its file
+  journal_.start_again({});  // even when it cannot be read: the world is then as in its file
   // Restore texts and entries.
   WorldJournal::Texts texts;
   std::vector<Entry> entries;
@@ -62,6 +62,8 @@ void check_pose(const Pose& X_W) {
 }  // namespace
 
 void JournalReplay::apply(const Entry& entry) {
+  // Each change is made at its own step: what is added looks at the time, and the water of that time, as it did in
+  // the run.
   parts_.clock.step_number = entry.step;
   parts_.medium.advance_to(parts_.clock.now());
   check_pose(entry.X_W);
@@ -105,6 +107,7 @@ void JournalReplay::apply_vehicle(const Entry& entry) {
 
 void JournalReplay::apply_object(const Entry& entry) {
   if (parts_.entities.find_object(entry.name) != nullptr) throw SnapshotError("the snapshot has an object twice");
+  // The numbers must be those of the run: they are part of the state, and of its hashes.
   parts_.entities.prescribe_object_number(entry.number);
   parts_.physics.prescribe(entry.numbers);
   if (entry.in_file >= 0) {

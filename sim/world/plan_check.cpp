@@ -71,6 +71,7 @@ void warn_of_plans(const World& world, const Vehicle& vehicle, Warnings& warning
       warnings.warn(config.source ? place_of(*config.source, place.key) : config.place,
                     "vehicle '" + vehicle.name() + "': device '" + config.name + "'",
                     "'" + std::string(place.key) + "': " + fault);
+      // One wrong place in a plan is enough; the others are likely wrong in the same way.
       break;
     }
   }

@@ -71,6 +71,7 @@ class StartCheck {
       const auto box = parts[i].group < 0 ? std::nullopt : world.physics().bounds_W(static_cast<int>(i));
       if (!box) continue;
       const auto [height, fresh] = heights_m_.try_emplace(parts[i].group, box->min().z(), box->max().z());
+      // Groups get one box over all their parts.
       if (fresh) continue;
       height->second.first = std::min(height->second.first, box->min().z());
       height->second.second = std::max(height->second.second, box->max().z());

@@ -30,6 +30,8 @@ World::World(const WorldConfig& config, Bus& bus, PortOpener open_port, BusFinde
       journal_(std::make_unique<WorldJournal>(*parts_)),
       editor_(std::make_unique<WorldEditor>(*this, *parts_, *builder_, *journal_)),
       state_(std::make_unique<WorldState>(*parts_, *builder_, *editor_, *journal_)) {
+  // Checks of the start come after build(): they need the bodies at their places, the water and the bottom below
+  // them.
   builder_->build();
   parts_->script = std::make_unique<Script>(*editor_);
   Warnings& warnings = parts_->warnings.building();
@@ -70,7 +72,7 @@ void keep_leaps(WorldParts& parts) {
 
 /// Returns where to measure the work of this step; null: not.
 SharedWork* work_to_measure(const WorldParts& parts) {
-  constexpr std::int64_t steps_between = 61;  // no multiple of the periods of sensors
+  constexpr std::int64_t steps_between = 61;  // not a multiple of any usual sensor period
   const ThreadPool* const threads = parts.schedule.threads();
   const bool due = threads != nullptr && threads->threads() > 1 && parts.clock.step_number % steps_between == 0;
   return due ? parts.shared_work : nullptr;

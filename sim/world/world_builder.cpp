@@ -30,6 +30,7 @@ void WorldBuilder::build() {
   parts_.acoustics = std::make_unique<AcousticChannel>(
       config.acoustics, AcousticSurroundings{parts_.medium, parts_.physics, parts_.events, parts_.seed()});
   parts_.acoustics->set_observer(parts_.observer);
+  // Materials come first, since parts name them.
   parts_.surfaces.start(config);
   add_objects();
   add_vehicles();
@@ -83,6 +84,7 @@ const WorldObject& WorldBuilder::build_object(std::shared_ptr<const ObjectConfig
     build_bodies_of(object, *config, X_WE, config->fixed);
     build_joints_of(object, *config, X_WE);
   } catch (...) {
+    // What was added must go again, or a half-built group would stay in the world.
     parts_.hydrodynamics->remove_group(object.group());
     parts_.physics.remove_group(object.group());
     throw;
@@ -93,7 +95,7 @@ const WorldObject& WorldBuilder::build_object(std::shared_ptr<const ObjectConfig
 }
 
 const WorldObject& WorldBuilder::place_object(const ObjectConfig& config, const std::string& name, const Pose& X_WE) {
-  // An object moved by an actor must be kinematic, also when another object of its name is added.
+  // An object moved by an actor must be kinematic, even when another object of its name is added.
   const bool led = std::any_of(parts_.config.actors.begin(), parts_.config.actors.end(),
                                [&](const ActorConfig& actor) { return actor.object == name; });
   const auto own = std::make_shared<ObjectConfig>(config);
@@ -217,6 +219,7 @@ bool WorldBuilder::change_device(const std::string& full_name, const ConfigNode&
     diagnostics.error(values.place, who, error.what());
     return false;
   }
+  // The new keys may change the rate, and so the next sample, and what the device contributes to the step hash.
   parts_.schedule.plan_again(*device);
   parts_.step_hash.forget_devices();
   return true;

@@ -90,7 +90,7 @@ void WorldJournal::start_again(const Texts& texts) {
   full_ = false;
   for (const auto& [number, text] : texts) {
     if (number < 0 || !texts_.try_emplace(number, Text{text, 0}).second || !text_numbers_.emplace(text, number).second)
-      throw SnapshotError("the snapshot has the YAML of vehicles or objects twice");
+      throw SnapshotError("the snapshot has duplicate YAML of vehicles or objects");
     size_ += text.size();
   }
 }

@@ -69,7 +69,7 @@ void WorldParts::visit_vehicle(StateArchive& archive, Vehicle& vehicle) {
   archive.section(vehicle.name());
   vehicle.clock().advance_time_to(clock.now());  // the schedule advances it only when its history changes
   archive(vehicle);
-  // With a forged value it would be advanced in any number of small steps.
+  // A forged value would make it advance in any number of small steps.
   if (archive.restoring() && !vehicle.clock().is_stopped_at(clock.now()))
     archive.fail("a clock whose time does not match that of the world");
 }

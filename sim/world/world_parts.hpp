@@ -46,7 +46,7 @@ struct WorldParts {
   void visit_vehicle(StateArchive& archive, Vehicle& vehicle);
   void visit_rest(StateArchive& archive);
 
-  // In the order of dependence: devices are destroyed before the objects to which they refer.
+  // Members are in the order of dependence: devices are destroyed before the objects to which they refer.
   const WorldConfig& config;
   PortOpener open_port;
   StepClock clock;

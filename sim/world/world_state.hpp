@@ -47,10 +47,10 @@ class WorldState {
   /// snapshot does not match; the world is then as before, or, when that fails too, the error says so.  The world may
   /// have been rebuilt meanwhile: see World::generation().
   void restore(std::span<const std::byte> snapshot);
-  /// From the next step on adds the time of each stage to `times`, which must outlive the world or be removed by null.
+  /// Adds the time of each stage to `times` from the next step on, which must outlive the world or be removed by null.
   /// No result depends on it.
   void measure_stages(StageTimes* times);
-  /// From now on adds the times of some steps to `work` if several threads share them; otherwise as measure_stages().
+  /// Adds the times of steps that several threads share to `work` from now on; otherwise like measure_stages().
   void measure_shared_work(SharedWork* work);
 
  private:

@@ -134,7 +134,7 @@ class ConfigCheck {
     const SpreadingConfig& spreading = world_.acoustics.spreading;
     if (!spreading.transition_range_m && spreading.factor == 2) return;
     warnings_.warn(place_of(*acoustics, "spreading"), "acoustics",
-                   "'spreading' has no effect: in this water sound travels along rays, and their tubes are the "
+                   "'spreading' has no effect: in this water sound travels along rays, whose ray tubes give the "
                    "spreading; remove it, or set 'propagation: straight'");
   }
 
@@ -198,6 +198,8 @@ class ConfigCheck {
   }
 
   void check_joint(const JointConfig& joint, const ConfigNode& source, const std::string& who) const {
+    // Keys without effect are often the sign of a wrong `type`: the joint is valid, but moves otherwise than its
+    // author thinks.
     const bool fixed = joint.type == JointType::fixed, ball = joint.type == JointType::ball;
     const std::string type = std::string(word_of(joint_type_words, joint.type)) + (fixed ? " joint" : "");
     const auto warn_of = [&](const ConfigNode* axis, std::initializer_list<const char*> keys,
@@ -227,7 +229,7 @@ class ConfigCheck {
     const double step_s = world_.physics.step_s;
     if (rate_hz * step_s <= close_to_one) return;
     warnings_.warn(place, who,
-                   what + " of " + number_text(rate_hz) + " Hz is above that of the steps: it becomes " +
+                   what + " of " + number_text(rate_hz) + " Hz is above the step rate: it becomes " +
                        number_text(std::round(1e6 / step_s) / 1e6) + " Hz with 'step_s' " + number_text(step_s));
   }
 
@@ -279,6 +281,7 @@ std::set<std::string> subscribed_channels_of(const WorldConfig& world) {
 void warn_of_config(const WorldConfig& world, const ConfigNode& root, Warnings& warnings,
                     std::optional<double> duration_s) {
   const double given_s = duration_s.value_or(world.run.duration_s);
+  // A run without an end reaches every event.
   const bool endless = given_s == 0 || world.run.duration_s == 0;
   const ConfigCheck check(world, root, warnings, endless ? 0 : std::max(given_s, world.run.duration_s));
   check.check_vehicles();

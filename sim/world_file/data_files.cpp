@@ -91,6 +91,7 @@ class Visitor {
 Keys data_file_keys() {
   std::vector<ParamInfo> table;
   ParamReader in(table);
+  // The keys that name files come from the readers themselves, so that a new key is never forgotten here.
   WorldConfig().read(in);
   VehicleConfig().read(in);
   Keys keys;

@@ -47,6 +47,8 @@ std::optional<DeviceConfig> changed_device(const DeviceConfig& device, const Veh
                                            const WorldConfig& world, const ConfigNode& values, const std::string& who,
                                            Diagnostics& diagnostics) {
   const std::size_t errors_before = diagnostics.lines().size();
+  // The whole device is read again from its YAML with the changed keys, so that every rule between keys is checked as
+  // at the start.
   ConfigNode source = *device.source;
   const std::set<std::string> common = common_keys(*device.device_type);
   if (values.kind != ConfigNode::Kind::map)

@@ -7,7 +7,7 @@
 
 namespace sim {
 
-/// What a YAML file describes, by the keys of its top level.
+/// Kind of a YAML file, judged by its top-level keys.
 enum class FileKind { world, vehicle, study, motion, declaration };
 
 /// Kind of the file with this top level; a world when no key decides.

@@ -106,7 +106,7 @@ void add_override(ConfigNode& vehicle, const std::string& key, const ConfigNode&
 }
 
 /// Converts a path into the vehicle file, such as `vehicles.NAME.devices.lidar.rate_hz`, to an override of the entry,
-/// also when NAME is one vehicle of a `count`.
+/// even when NAME is one vehicle of a `count`.
 bool set_override(ConfigNode& root, const std::string& path, const ConfigNode& value, const SourcePlace& place,
                   Diagnostics& diagnostics) {
   const std::size_t first = path.find('.');

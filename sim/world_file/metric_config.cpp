@@ -110,6 +110,7 @@ void read_rules(ParamReader& in, std::vector<RuleExpression>& rules, const std::
 void declare_metrics(ParamReader& in) {
   const ConfigNode* metrics = in.describing() ? nullptr : in.child("metrics");
   if (metrics == nullptr) return;
+  // Metrics may refer to each other in any order, so their names are known before they are read.
   std::set<std::pair<std::string, std::string>> names;
   for (const ConfigNode& metric : metrics->items) {
     const ConfigNode* type = metric.find("type");

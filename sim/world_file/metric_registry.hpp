@@ -54,7 +54,7 @@ struct MetricKind {
 
   /// Returns a figure by name; null when there is none.
   const FigureKind* find(const std::string& figure) const;
-  /// Returns its keys except `name` and `type`.
+  /// Returns the keys of the type except `name` and `type`.
   std::vector<ParamInfo> keys() const;
 };
 

@@ -158,6 +158,7 @@ class RuleParser {
       const std::size_t divisor = at_;
       read_operand();
       const Step& last = steps_->back();
+      // A figure may be 0 as well, but that is known only after the run.
       if (kind == Step::Kind::divide && last.kind == Step::Kind::number && last.number == 0)
         fail(divisor, "a division by 0 has no result");
       steps_->push_back({.kind = kind});
@@ -200,6 +201,7 @@ class RuleParser {
     const bool ends_there =
         at_ + length >= text_.size() || !is_of_name(text_[at_ + length]) || text_[at_ + length] == '-';
     if (error == std::errc::invalid_argument || !ends_there) {
+      // A figure may begin with a digit, since names of vehicles may.
       if (is_digit(text_[at_]) && has_figure(word())) return read_name();
       fail(at_, quoted(word()) + " is not a number");
     }
@@ -226,6 +228,7 @@ class RuleParser {
   void read_function(const std::string& function) {
     const std::size_t begin = at_;
     at_ += function.size();
+    // Errors point at the character of the rule that is wrong, so positions are kept before anything is skipped.
     skip_blanks();
     const std::size_t open = at_;
     if (const std::string problem = names_.function_problem(function); !problem.empty()) fail(begin, problem);

@@ -54,7 +54,7 @@ class RuleExpression {
 
   /// Makes an empty rule.
   RuleExpression() = default;
-  /// Parses `text`.  Returns none when it is not a rule; `problem` then has the reason.
+  /// Parses `text`.  Returns std::nullopt if it is not a rule; `problem` then has the reason.
   static std::optional<RuleExpression> parse(std::string_view text, const RuleNames& names, RuleProblem& problem);
 
   const std::string& text() const { return text_; }

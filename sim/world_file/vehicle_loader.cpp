@@ -172,6 +172,7 @@ const ConfigNode* VehicleLoader::model_of(const VehicleEntry& entry, const std::
     diagnostics_.error(entry.file_place, who, "'" + shortened(entry.file) + "' is " + other);
     return nullptr;
   }
+  // Vehicles of one file share its tree: a fleet reads it once.
   auto [at, fresh] = files_.try_emplace(path);
   if (fresh) at->second = load_config_file(path, diagnostics_, Origin::file);
   return at->second.kind == ConfigNode::Kind::map ? &at->second : nullptr;
@@ -197,6 +198,7 @@ std::shared_ptr<const VehicleConfig> VehicleLoader::instance(const VehicleEntry&
   const std::string who = "vehicle '" + name + "'";
   ConfigNode tree = model;
   const auto& changes = entry.overrides.entries;
+  // Changes for all vehicles of a count first, so that those for one of them win.
   for (const ConfigNode::Entry& change : changes)
     if (change.key.find('/') == std::string::npos)
       set_config_path(tree, change.key, change.value, change.place, diagnostics_);
@@ -250,6 +252,7 @@ Parameters VehicleLoader::parameters_of(const VehicleEntry& entry, const ConfigN
       continue;
     }
     known->second = given.value;
+    // A value given in the world may contain `${index}`, so that one entry with a count gives each vehicle its own.
     substitute_parameters(known->second, {parameters[0]}, who, diagnostics_);
   }
   return parameters;
@@ -261,12 +264,14 @@ VehicleConfig load_vehicle(const std::string& path, const LoadOptions& options) 
   diagnostics.throw_if_any();
   Parameters parameters;
   parameters.emplace_back("index", scalar_node("1", tree.place));
+  // A vehicle file alone has no instance, so its parameters get their defaults.
   parameters.emplace_back("name", scalar_node("vehicle", tree.place));
   if (const ConfigNode* defaults = tree.find("parameters"))
     for (const ConfigNode::Entry& each : defaults->entries) parameters.emplace_back(each.key, each.value);
   substitute_parameters(tree, parameters, "", diagnostics);
   VehicleConfig config;
   ParamReader in(tree, "", diagnostics);
+  // A world would declare these; materials of the world are unknown here.
   in.declare("material", "default");
   in.declare("category", "solid");
   config.read(in);

@@ -54,6 +54,7 @@ void VehicleEntry::read(ParamReader& in) {
   in.read_reference("bus", bus, "bus", "separate bus, named in `buses`; unset: the world's");
   in.read_raw("overrides", overrides,
               "dotted path: value, such as devices.lidar.rate_hz: 5; NAME3/devices.lidar.rate_hz: one of a count");
+  // Both at once would leave open which of them is meant.
   if (!in.describing() && in.has("file") == in.has("model"))
     in.error(in.has("file") ? "needs either 'file' or 'model', not both" : "needs either 'file' or 'model'");
 }
@@ -106,7 +107,7 @@ void ProcessConfig::read(ParamReader& in) {
   in.read("program", program, "a program with a declaration of its arguments, see docs/guides/program_arguments.md");
   in.read_raw("args", args, "arguments of 'program' by name; in texts {lcm_url} and {run} are replaced");
   read_command(in, command);
-  in.read("client", client, "the name it joins the lockstep with; the run then waits for it");
+  in.read("client", client, "client name with which it joins the lockstep; the run then waits for it");
   in.read_reference("bus", bus, "bus", "its LCM URL is that of this bus, named in `buses`; unset: the world's");
   in.read_choice(
       "on_exit", on_exit, {{"continue", OnExit::go_on}, {"end", OnExit::end_run}, {"ignore", OnExit::ignore}},
@@ -121,7 +122,7 @@ void ProcessConfig::read(ParamReader& in) {
     in.error(in.has("program") ? "needs either 'program' or 'command', not both"
                                : "needs either 'program' with 'args' or 'command'");
   if (in.has("args") && !in.has("program"))
-    in.error("args", "'args' goes with 'program'; 'command' has its arguments in its list");
+    in.error("args", "'args' needs 'program'; the arguments of 'command' belong into its list");
 }
 
 void LockstepConfig::read(ParamReader& in) {

@@ -163,7 +163,7 @@ struct WorldConfig {
   std::vector<ZoneConfig> zones;
   std::vector<ActorConfig> actors;
   std::vector<EventConfig> events;
-  /// For checks of a file: only the first 100 vehicles of a model get joints and devices.
+  /// Used to check a file: only the first 100 vehicles of a model get joints and devices.
   bool bodies_only_of_many = false;
   EncodeMessage encode_message;  ///< encoder for actions that publish; empty: they cannot publish
   double state_rate_hz = 10;     ///< rate of sim.state and sim.clock

@@ -91,7 +91,7 @@ TEST(AcousticsCommand, DrawsRaysWhereSoundBends) {
   EXPECT_GT(std::filesystem::file_size(folder.file("rays.png")), 10000u);
   const Ended straight = acoustics({"--rays", folder.file("none.png")});
   EXPECT_EQ(straight.exit_code, 2);
-  EXPECT_THAT(straight.errors, HasSubstr("sound is straight in this world"));
+  EXPECT_THAT(straight.errors, HasSubstr("sound travels along straight lines in this world"));
 }
 
 TEST(AcousticsCommand, ChecksTheClosedForms) {

@@ -177,7 +177,7 @@ TEST(Campaign, StopsWhenTheResultIsCertain) {
   EXPECT_THAT(ended.output, HasSubstr("\n" + outcome + "\n"));
   EXPECT_THAT(study.text("report.html"),
               HasSubstr("<p>" + std::regex_replace(outcome, std::regex("<"), "&lt;") + ".</p>"));
-  EXPECT_THAT(ended.errors, HasSubstr("'batch' is 4: 'until' may hold by chance after fewer than 10 seeds"));
+  EXPECT_THAT(ended.errors, HasSubstr("'batch' is 4: 'until' may be met by chance after fewer than 10 seeds"));
   EXPECT_FALSE(fs::exists(study.out() + "/runs/world/seed_5"));
   // Further runs do not change the result.
   ASSERT_EQ(steps.call("plan").exit_code, 0);

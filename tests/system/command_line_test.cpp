@@ -213,7 +213,7 @@ TEST(CommandLine, AWorldThatIsGivenForALogIsAnErrorWithTheRightCommand) {
   const Ended ended = run_shoal({"view", "minimal"});
   EXPECT_EQ(ended.exit_code, 2);
   EXPECT_EQ(ended.errors,
-            "'minimal': is a world, and this command shows logs; `shoal run minimal --view` shows its run\n");
+            "'minimal': is a world, but this command shows logs; `shoal run minimal --view` shows its run\n");
 }
 
 TEST(CommandLine, EveryOptionSaysWhatIsWrongWithIt) {

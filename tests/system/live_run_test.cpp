@@ -135,7 +135,7 @@ TEST_F(LiveRun, RefusesWhatItDoesNotUnderstand) {
   EXPECT_FALSE(request("speed", -1).ok);
   EXPECT_FALSE(request("step", 0).ok);
   EXPECT_FALSE(request("step", 1e300).ok);
-  EXPECT_FALSE(request("join", 0.015).ok);  // no multiple of the step
+  EXPECT_FALSE(request("join", 0.015).ok);  // not a multiple of the step
   EXPECT_FALSE(request("join", -1).ok);
   EXPECT_FALSE(request("leave").ok);
   await_steps(3);

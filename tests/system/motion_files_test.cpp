@@ -141,7 +141,7 @@ TEST_F(MotionFiles, AMotionOfMoreThanAnHourIsPlayedToItsEnd) {
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
   EXPECT_THAT(ended.output, testing::ContainsRegex("\n3700\\.[0-9]+ s simulated, state hash at the end of the motion"));
   EXPECT_THAT(ended.output, HasSubstr("again from 3699."));
-  EXPECT_THAT(ended.output, HasSubstr("the same state at the end"));
+  EXPECT_THAT(ended.output, HasSubstr("the same final state"));
 }
 
 TEST_F(MotionFiles, TheWayToTheFirstValuesHasALeastVelocity) {

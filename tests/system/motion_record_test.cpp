@@ -94,7 +94,7 @@ TEST_F(MotionRecord, EightJointsStartInOneFrameAndTheSameEventsGiveTheSameFiles)
   EXPECT_EQ(after, "0.12,-0.012,0.012,0.012,0.012,-0.012,0.012,0.012,0.012");
   // The exact motion ends in the state of the recording, and keeps the limits of the robot.
   const Ended played = run_shoal({"motion", "play", take(), "--world", source("worlds/ers7_studio.yaml")});
-  EXPECT_THAT(played.output, HasSubstr("the state at the end is that of the recording"));
+  EXPECT_THAT(played.output, HasSubstr("the final state equals that of the recording"));
   const Ended checked = run_shoal({"motion", "check", file_});
   EXPECT_EQ(checked.exit_code, 0) << checked.output;
 }
@@ -122,13 +122,13 @@ TEST_F(MotionRecord, ATakePlaysInTheWorldThatItHolds) {
   const Ended changed = run_shoal({"motion", "play", take(), "--world", world});
   EXPECT_EQ(changed.exit_code, 1) << changed.output;
   EXPECT_THAT(changed.output, HasSubstr("world: " + world + ", not the embedded one\n"));
-  EXPECT_THAT(changed.output, HasSubstr("is another one than that of the recording"));
+  EXPECT_THAT(changed.output, HasSubstr("differs from that of the recording"));
   std::filesystem::remove(world);
   const Ended played = run_shoal({"motion", "play", take()});
   EXPECT_EQ(played.exit_code, 0) << played.output << played.errors;
   EXPECT_THAT(played.output, HasSubstr("world: the one embedded in " + take() + "\n"));
-  EXPECT_THAT(played.output, HasSubstr("the state at the end is that of the recording"));
-  EXPECT_THAT(run_shoal({"motion", "play", file_}).errors, HasSubstr("needs --world: '" + file_ + "' holds no world"));
+  EXPECT_THAT(played.output, HasSubstr("the final state equals that of the recording"));
+  EXPECT_THAT(run_shoal({"motion", "play", file_}).errors, HasSubstr("needs --world: '" + file_ + "' contains no world"));
 }
 
 TEST_F(MotionRecord, APageChangesNothing) {
@@ -197,7 +197,7 @@ TEST_F(MotionRecord, GoesOnFromTheEndOfTheFile) {
   const std::string csv = text_of_file(frames());
   EXPECT_THAT(row_of(csv, 0), HasSubstr("neck_tilt"));
   const Ended played = run_shoal({"motion", "play", take(), "--world", source("worlds/ers7_studio.yaml")});
-  EXPECT_THAT(played.output, HasSubstr("the state at the end is that of the recording"));
+  EXPECT_THAT(played.output, HasSubstr("the final state equals that of the recording"));
   // What the file had is still there: the other part was recorded at its end.
   const Ended compared = run_shoal({"motion", "compare", file_});
   EXPECT_THAT(compared.output, HasSubstr("neck_tilt"));
@@ -221,7 +221,7 @@ TEST_F(MotionRecord, ItsDurationMayBeBeyondTheEndOfTheFile) {
                         "--punch-out, got 7"));
   EXPECT_THAT(errors_of({"--append", "--duration", "1"}),
               HasSubstr("--duration must be above 1.6 s, where the recording starts, got 1"));
-  EXPECT_THAT(errors_of({"--append", "--punch-in", "1"}), HasSubstr("--punch-in does not go with --append"));
+  EXPECT_THAT(errors_of({"--append", "--punch-in", "1"}), HasSubstr("--punch-in does not apply to --append"));
   write_file(file_,
              "shoal: 1\nmotion: wave\nloop: true\nkeys:\n  - {at_s: 0, joints: {mouth: -10}}\n"
              "  - {at_s: 1, joints: {mouth: -10}}\n");
@@ -253,7 +253,7 @@ TEST_F(MotionRecord, ChangesOfTheWorldAreAPartOfIt) {
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
   EXPECT_THAT(text_of_file(file_), HasSubstr("changes:\n  - {at_s: 0.208, do: {add: "));
   const Ended played = run_shoal({"motion", "play", take(), "--world", source("worlds/ers7_studio.yaml")});
-  EXPECT_THAT(played.output, HasSubstr("the state at the end is that of the recording"));
+  EXPECT_THAT(played.output, HasSubstr("the final state equals that of the recording"));
   EXPECT_THAT(
       run_shoal(arguments({"--on", "3={remove: box}", "--overwrite", "--events", folder_.file("keys.events")})).errors,
       HasSubstr("--on: key '3' has another effect"));

@@ -55,7 +55,7 @@ TEST(Motion, IsCheckedAgainstALimitOfTwoJoints) {
 TEST(Motion, IsPlayedAndAgainFromAnInstantWithTheSameEnd) {
   const Ended ended = motion({"play", source(wave), "--world", source("worlds/ers7_studio.yaml"), "--again-from", "4"});
   EXPECT_EQ(ended.exit_code, 0) << ended.errors;
-  EXPECT_THAT(ended.output, HasSubstr("the same state at the end"));
+  EXPECT_THAT(ended.output, HasSubstr("the same final state"));
   EXPECT_THAT(ended.output, Not(HasSubstr("has fallen")));
 }
 
@@ -70,7 +70,7 @@ TEST(Motion, APartOfItIsPlayedAgainAndAgain) {
   EXPECT_THAT(ended.output, HasSubstr("3.000 s simulated"));
   const Ended once = play({"--from", "1", "--to", "1.5", "--again-from", "1.25"});
   EXPECT_EQ(once.exit_code, 0) << once.errors;
-  EXPECT_THAT(once.output, HasSubstr("the same state at the end"));
+  EXPECT_THAT(once.output, HasSubstr("the same final state"));
   const auto error_of = [&](std::vector<std::string> more) {
     const Ended refused = play(std::move(more));
     EXPECT_EQ(refused.exit_code, 2);
@@ -304,9 +304,8 @@ TEST(Motion, IsPlayedInTheWorldOfItsRecordingWithAVerdict) {
   };
   const Ended other = play("ers7_studio");
   EXPECT_EQ(other.exit_code, 1) << other.errors;
-  EXPECT_THAT(other.output,
-              testing::EndsWith("it was recorded with --set 'vehicles.dog.position_m=1'\nthe state at the "
-                                "end is another one than that of the recording\n"));
+  EXPECT_THAT(other.output, testing::EndsWith("it was recorded with --set 'vehicles.dog.position_m=1'\nthe final state "
+                                              "differs from that of the recording\n"));
   EXPECT_THAT(other.output, testing::ContainsRegex("state hash at the end of the motion [0-9a-f]{16}\n"));
   EXPECT_THAT(other.output, testing::ContainsRegex("state hash after 0\\.5 s of settling [0-9a-f]{16}\n"));
   // The joint of the motion is the first row.

@@ -148,7 +148,7 @@ TEST(Study, ExitCodeIs2ForAMistake) {
   const StudyFolder study("seeds: [1]\nfigures: [way.rms_m]\n");
   const Ended ended = study.run();
   EXPECT_EQ(ended.exit_code, 2);
-  EXPECT_THAT(ended.errors, HasSubstr("study.yaml:5:10: 'figures' names nothing of this world: 'way.rms_m'"));
+  EXPECT_THAT(ended.errors, HasSubstr("study.yaml:5:10: 'figures' names nothing in this world: 'way.rms_m'"));
   EXPECT_FALSE(fs::exists(study.folder.file("out")));
   EXPECT_EQ(run_shoal({"study", study.folder.file("none.yaml")}).exit_code, 2);
 }

@@ -25,7 +25,7 @@ TEST(Warnings, AreTheSameInCheckAndRun) {
                           "      vehicle: ball\n"
                           "      bodies: [{name: hull, parts: [{shape: sphere, mass_kg: 1}]}]\n"
                           "      devices: [{name: imu, type: imu, rate_hz: 300}]\n");
-  const std::string rate = file + ":12:49: vehicle 'v1': device 'imu': 'rate_hz' of 300 Hz is above that of the steps";
+  const std::string rate = file + ":12:49: vehicle 'v1': device 'imu': 'rate_hz' of 300 Hz is above the step rate";
   const std::string start = file + ":6:5: vehicle 'v1': it starts 0.3 m deep in 'ground'";
   const system_test::Ended check = system_test::run_shoal({"check", file});
   const system_test::Ended run = system_test::run_shoal({"run", file, "--bus", "none", "--quiet"});

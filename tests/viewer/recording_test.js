@@ -58,7 +58,7 @@ after(async () => {
 
 describe('recording', () => {
   it('is beside the report, which links to it', async () => {
-    assert.match(output, /run\.html: the run in three dimensions, [\d.]+ MB, 0 to 20 s, \d+ states/);
+    assert.match(output, /run\.html: the run in 3-D, [\d.]+ MB, 0 to 20 s, \d+ states/);
     assert.match(await readFile(join(folder, 'report.html'), 'utf8'), /<a href="run\.html">/);
     assert.ok((await readFile(join(folder, 'run.html'))).length < 20e6);
   });

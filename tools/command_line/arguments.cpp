@@ -86,6 +86,7 @@ class Reader {
 
   std::string unknown_command(const std::string& word, const std::vector<std::string>& names) {
     const std::string text = "unknown command " + quoted(word);
+    // A typing error, a beginning of a name, or a world without `run`: in the order of their likelihood.
     if (const std::string meant = sim::closest_name(word, names); !meant.empty())
       return text + "; did you mean '" + meant + "'?";
     const auto begins = std::find_if(names.begin(), names.end(),

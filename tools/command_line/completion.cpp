@@ -12,7 +12,7 @@ namespace command_line {
 
 namespace {
 
-/// What the value of an argument is completed with.
+/// Completion of the value of an argument.
 struct Value {
   enum class Kind { none, files, folders, words, words_or_files };
   Kind kind = Kind::none;
@@ -25,7 +25,7 @@ bool contains(const std::string& name, std::initializer_list<const char*> parts)
                      [&](const char* part) { return name.find(part) != std::string::npos; });
 }
 
-/// Returns the words of a rule such as `a, b or c`; nothing for another rule, such as `from 1 to 5`.
+/// Returns the words of a rule such as `a, b or c`; empty for another rule, such as `from 1 to 5`.
 std::string words_of_rule(const CLI::Option& option) {
   const std::string type = option.get_type_name();
   const std::size_t colon = type.find(':');
@@ -116,13 +116,14 @@ struct BashCases {
           values += "    " + in_quotes(path + " " + name) + ") " + bash_value(value) + " ;;\n";
       });
     }
+    // bash splits the list at blanks, so the last one must go.
     if (!words.empty()) words.pop_back();
     offers += "      " + in_quotes(path) + ") " + positional + "; _words+=\" \"" + in_quotes(words) + " ;;\n";
     for (const CLI::App* below : commands_of(command)) add(*below, word_commands);
   }
 };
 
-/// Returns a text for a specification of zsh's _arguments, in which brackets and colons mean something.
+/// Returns a text for a specification of zsh's _arguments, in which brackets and colons are special.
 std::string zsh_text(const std::string& text) {
   std::string safe;
   for (const char c : text) {

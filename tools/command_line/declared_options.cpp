@@ -220,6 +220,7 @@ void DeclaredOptions::check_groups() const {
 }
 
 std::optional<int> DeclaredOptions::parse(int argc, const char* const* argv) {
+  // Alone and first: required options must not stand in its way, for builds call it.
   if (argc == 2 && std::string(argv[1]) == "--describe") {
     std::cout << to_yaml(declaration_) << std::flush;
     return std::cout ? 0 : 4;

@@ -72,7 +72,7 @@ class DeclaredOptions {
 
   CLI::App& app() { return app_; }
   const sim::ProgramDeclaration& declaration() const { return declaration_; }
-  /// Parses the command line after all declarations.  Returns nothing when the program is to continue; otherwise the
+  /// Parses the command line after all declarations.  Returns std::nullopt if the program is to continue; otherwise the
   /// exit code, also after `--describe`.
   std::optional<int> parse(int argc, const char* const* argv);
 

@@ -177,6 +177,7 @@ std::string help_text(const CLI::App& command, std::size_t columns) {
     if (option->get_positional())
       arguments.emplace_back(option->get_name(true), meaning_of(*option));
     else
+      // --help comes first, whatever the order in which the options were added.
       options.emplace(option == command.get_help_ptr() ? options.begin() : options.end(), names_of(*option),
                       meaning_of(*option));
   std::string group;

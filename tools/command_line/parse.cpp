@@ -24,7 +24,8 @@ std::string in_our_words(const CLI::ParseError& error) {
     const std::size_t at = text.find(what);
     return at == std::string::npos ? text : text.substr(0, at) + by + text.substr(at + what.size());
   };
-  if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr) return replaced(" excludes ", " does not go with ");
+  if (dynamic_cast<const CLI::ExcludesError*>(&error) != nullptr)
+    return replaced(" excludes ", " cannot be combined with ");
   if (dynamic_cast<const CLI::RequiresError*>(&error) != nullptr) return replaced(" requires ", " needs ");
   if (dynamic_cast<const CLI::ConversionError*>(&error) != nullptr) {
     const std::string begin = "Could not convert: ";

@@ -58,7 +58,7 @@ int balance(const Options& options) {
     if (!torques) {
       if (now_s < 1 || state.waits) return;
       state.waits = true;
-      std::cerr << options.name << ": no torque, since not all reports come: " << prefix << "inclinometer, " << prefix
+      std::cerr << options.name << ": no torque, because reports are missing: " << prefix << "inclinometer, " << prefix
                 << "encoder" << (options.balance.filter_s > 0 ? ", " + prefix + "imu" : "") << '\n';
       return;
     }
@@ -87,7 +87,7 @@ int balance(const Options& options) {
 void declare_gains(command_line::DeclaredOptions& declared, Options& options) {
   autonomy::Balance::Params& gains = options.balance;
   declared.number("balanced_tilt_deg", options.balanced_tilt_deg, -45, 45,
-                  "tilt, positive forward, at which its center of mass is over its axle");
+                  "tilt at which its center of mass is above its axle, positive forward");
   declared.number("kp_Nm_per_rad", gains.kp_Nm_per_rad, 0, 1e4, "torque of both wheels per tilt error");
   declared.number("kd_Nms_per_rad", gains.kd_Nms_per_rad, 0, 1e4, "torque of both wheels per tilt rate");
   declared.number("kv_rad_per_mps", gains.kv_rad_per_mps, 0, 10, "tilt setpoint per speed error");
@@ -95,9 +95,9 @@ void declare_gains(command_line::DeclaredOptions& declared, Options& options) {
   declared.number("max_tilt_rad", gains.max_tilt_rad, 0.01, 0.7, "limit of the tilt setpoint, from the balanced tilt");
   declared.number("max_acceleration_mps2", gains.max_acceleration_mps2, 0.01, 10, "limit of the speed setpoint");
   declared.number("max_tilt_speed_mps", gains.max_tilt_speed_mps, 0.01, 10,
-                  "speed towards which a commanded tilt is taken back");
+                  "speed limit of a commanded tilt, which is reduced as the vehicle approaches it");
   declared.number("tilt_torque_Nm_per_rad", gains.tilt_torque_Nm_per_rad, 0, 1e4,
-                  "torque of both wheels that keeps a commanded tilt while it accelerates");
+                  "torque of both wheels per commanded tilt, which holds the tilt while it accelerates");
   declared.number("turn_gain_Nms_per_rad", gains.turn_gain_Nms_per_rad, 0, 1e4,
                   "differential wheel torque per yaw rate error");
   declared.number("turn_ki_Nm_per_rad", gains.turn_ki_Nm_per_rad, 0, 1e4,
@@ -123,15 +123,15 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
         for (const auto& numbers : lists)
           options.speeds.push_back({numbers[0], numbers[1], numbers.size() > 2 ? numbers[2] : 0});
       },
-      "forward speed and turn rate from a time on; a missing turn rate is 0");
+      "forward speed and turn rate, each row from its time on; a missing turn rate is 0");
   declare_gains(declared, options);
   options.participation.declare(declared);
   autonomy::set_help_end(
       declared, {"shoal-balance --name segway1 --speeds '[[5,0.5],[15,-0.5],[25,0]]'", "shoal-balance --delay-margin"},
-      "It reads NAME.inclinometer, NAME.encoder and, with filter_s, NAME.imu, and drives as shoal.twist_command_t on "
-      "NAME.balance.cmd says, or tilts from its balance by the pitch of shoal.inclination_t there; it publishes "
+      "It reads NAME.inclinometer, NAME.encoder and, with filter_s, NAME.imu, and follows shoal.twist_command_t on "
+      "NAME.balance.cmd, or tilts from its balance by the pitch of shoal.inclination_t there; it publishes "
       "NAME.left_motor.cmd and NAME.right_motor.cmd, and "
-      "NAME.fallen when it fell.  Start it beside `shoal run worlds/segway.yaml --await segway1`.  "
+      "NAME.fallen when it has fallen.  Start it beside `shoal run worlds/segway.yaml --await segway1`.  "
       "docs/models/segway.md explains the gains.");
 }
 
@@ -153,6 +153,7 @@ int run(int argc, char** argv) {
               << " ms late\n";
     return autonomy::exit_ok;
   }
+  // Required here and not by the parser, since --delay-margin needs no vehicle.
   if (options.name.empty()) throw std::invalid_argument("--name is required");
   autonomy::check_speeds(options.speeds);
   return balance(options);

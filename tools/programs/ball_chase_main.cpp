@@ -44,28 +44,29 @@ int chase_ball(const Options& options) {
 
 void declare_ball(command_line::DeclaredOptions& declared, autonomy::BallDetector::Params& ball) {
   declared.number("fov_deg", ball.fov_deg, 1, 170, "horizontal field of view of the camera");
-  declared.number("ball_radius_m", ball.ball_radius_m, 0.001, 10, "radius of the ball, from which follows its range");
+  declared.number("ball_radius_m", ball.ball_radius_m, 0.001, 10,
+                  "radius of the ball, from which its range is computed");
   declared.integer("min_pixels", ball.min_pixels, 1, 1000000, "a smaller group of orange pixels is noise");
   declared.integer("min_red", ball.min_red, 1, 255, "darker pixels are not orange");
-  declared.number("min_saturation", ball.min_saturation, 0, 1, "of an orange pixel: (red - blue) / red");
-  declared.number("min_green_share", ball.min_green_share, 0, 1, "of an orange pixel: green / red, 0 is red");
-  declared.number("max_green_share", ball.max_green_share, 0, 1, "of an orange pixel: green / red, 1 is yellow");
+  declared.number("min_saturation", ball.min_saturation, 0, 1, "smallest (red - blue) / red of an orange pixel");
+  declared.number("min_green_share", ball.min_green_share, 0, 1, "smallest green / red of an orange pixel; 0 is red");
+  declared.number("max_green_share", ball.max_green_share, 0, 1, "largest green / red of an orange pixel; 1 is yellow");
 }
 
 void declare_chase(command_line::DeclaredOptions& declared, autonomy::BallChase::Params& chase) {
-  declared.number("search_turn_radps", chase.search_turn_radps, 0.01, 10, "turn rate of the search");
+  declared.number("search_turn_radps", chase.search_turn_radps, 0.01, 10, "turn rate while it searches");
   declared.number("turn_gain_per_s", chase.turn_gain_per_s, 0.01, 100, "turn rate per bearing of the ball");
   declared.number("max_turn_radps", chase.max_turn_radps, 0.01, 10, "limit of the turn rate");
   declared.number("approach_mps", chase.approach_mps, 0, 10, "speed towards the ball");
-  declared.number("slow_bearing_rad", chase.slow_bearing_rad, 0.01, 3, "bearing from which on it only turns");
+  declared.number("slow_bearing_rad", chase.slow_bearing_rad, 0.01, 3, "bearing above which it turns on the spot");
   declared.number("kick_mps", chase.kick_mps, 0, 10, "speed of a kick");
   declared.number("kick_range_m", chase.kick_range_m, 0.01, 100, "range at which a kick starts");
-  declared.number("kick_bearing_rad", chase.kick_bearing_rad, 0.001, 3, "a kick starts at a smaller bearing");
+  declared.number("kick_bearing_rad", chase.kick_bearing_rad, 0.001, 3, "largest bearing at which a kick starts");
   declared.number("kick_s", chase.kick_s, 0.01, 100, "a kick ends this long after the ball was last in its range");
-  declared.number("lost_s", chase.lost_s, 0.01, 100, "without a sighting for this long it searches");
-  declared.number("back_s", chase.back_s, 0, 100, "after a whole turn without a ball it drives backwards this long");
-  declared.number("back_mps", chase.back_mps, -10, 0, "speed of this");
-  declared.flag("predict", chase.predict, "corrects the bearing of late images by the turns since their time");
+  declared.number("lost_s", chase.lost_s, 0.01, 100, "it searches after it has not seen the ball for this long");
+  declared.number("back_s", chase.back_s, 0, 100, "time for which it backs up after a full turn without a ball");
+  declared.number("back_mps", chase.back_mps, -10, 0, "speed while it backs up");
+  declared.flag("predict", chase.predict, "correct the bearings of delayed images by the turn since they were taken");
 }
 
 void declare_striker(command_line::DeclaredOptions& declared, Options& options) {
@@ -75,18 +76,20 @@ void declare_striker(command_line::DeclaredOptions& declared, Options& options) 
                   "with the true heading of a compass; without it, it kicks in any direction");
   declared
       .number("aligned_rad", options.striker.aligned_rad, 0.01, 3,
-              "the ball is played when its direction is that of the goal up to this")
+              "largest angle between the directions of ball and goal at which it plays the ball")
       .needs({"goal_yaw_deg"});
   declared.number("behind_m", options.striker.behind_m, 0.01, 10, "distance at which it drives around the ball")
       .needs({"goal_yaw_deg"});
-  declared.number("memory_s", options.striker.memory_s, 0.01, 100, "the ball is remembered this long out of the image")
+  declared
+      .number("memory_s", options.striker.memory_s, 0.01, 100,
+              "time for which it remembers a ball that has left the image")
       .needs({"goal_yaw_deg"});
 }
 
 void declare(command_line::DeclaredOptions& declared, Options& options) {
   declared.publishes({"{vehicle}.{drive}.cmd"});
   declared.subscribes({"{vehicle}.{camera}", "{vehicle}.{compass}"});
-  declared.text("name", "NAME", options.name, "its name in the lockstep").required_in_worlds();
+  declared.text("name", "NAME", options.name, "its client name in the lockstep").required_in_worlds();
   declared.text("vehicle", "VEHICLE", options.vehicle, "vehicle that chases the ball").required_in_worlds();
   declared.text("camera", "DEVICE", options.camera, "its camera: raw RGB images of a pinhole without distortion");
   declared.text("compass", "DEVICE", options.compass, "its compass").needs({"goal_yaw_deg"});

@@ -71,16 +71,16 @@ int chase_ball(const Options& options) {
 void declare(command_line::DeclaredOptions& declared, Options& options) {
   declared.publishes({"{vehicle}.neck_tilt.cmd", "{vehicle}.head_nod.cmd", "{vehicle}.player.cmd"});
   declared.subscribes({"{vehicle}.camera"});
-  declared.text("name", "NAME", options.name, "its name in the lockstep").required_in_worlds();
+  declared.text("name", "NAME", options.name, "its client name in the lockstep").required_in_worlds();
   declared.text("vehicle", "VEHICLE", options.vehicle, "ERS-7 that chases the ball").required_in_worlds();
   declared.number("ball_radius_m", options.detector.ball_radius_m, 0.001, 10,
-                  "radius of the ball, from which follows its range");
+                  "radius of the ball, from which its range is computed");
   declared.number("kick_range_m", options.chase.kick_range_m, 0.01, 10,
-                  "range from which on it walks into the ball, also when it no longer sees it");
+                  "range below which it walks into the ball even when it no longer sees it");
   declared.number("turn_gain_per_s", options.chase.turn_gain_per_s, 0.01, 100, "turn rate per bearing of the ball");
-  declared.number("curve_radps", options.steering.curve_radps, 0, 10, "from this turn rate on it walks in a curve");
-  declared.number("spot_radps", options.steering.spot_radps, 0, 10, "from this turn rate on it turns on the spot");
-  declared.number("hold_s", options.steering.hold_s, 0, 10, "least time between two changes of the motion");
+  declared.number("curve_radps", options.steering.curve_radps, 0, 10, "turn rate above which it walks in a curve");
+  declared.number("spot_radps", options.steering.spot_radps, 0, 10, "turn rate above which it turns on the spot");
+  declared.number("hold_s", options.steering.hold_s, 0, 10, "shortest time between two changes of the motion");
   options.participation.declare(declared);
   autonomy::set_help_end(
       declared, {"shoal-ball-dog --name chase --vehicle dog"},

@@ -46,6 +46,7 @@ int drive(const Options& options) {
     if (decision.dead_reckoning) client.publish(name + ".dead_reckoning", *decision.dead_reckoning);
     if (decision.send) client.publish(name + ".modem.cmd", *decision.send);
   });
+  // Counts on stderr tell a silent modem from a filter that refuses its ranges.
   const autonomy::CoopAuv::Counts& counts = auv.counts();
   std::cerr << name << ": " << counts.frames << " frames received, " << counts.bad_frames << " bad; " << counts.ranges
             << " ranges used, " << counts.refused << " refused; " << counts.sent << " frames sent\n";
@@ -60,7 +61,7 @@ int drive(const Options& options) {
 void declare_filter(command_line::DeclaredOptions& declared, Options& options) {
   autonomy::CoopAuv::Params& auv = options.auv;
   declared.flag("no_cooperation", options.no_cooperation, "use no ranges: the estimate is dead reckoning");
-  declared.choice("steer", options.steer, {"cooperative", "dead_reckoning"}, "estimate to steer by");
+  declared.choice("steer", options.steer, {"cooperative", "dead_reckoning"}, "estimate by which it steers");
   declared.choice("states", auv.filter.states, {"2", "4", "5", "6"},
                   "states of the filter: 2 position; 4 and heading bias, speed scale; 5 and clock; 6 and its drift");
   declared.number("sound_speed_mps", auv.sound_speed_mps, 1000, 2000, "converts travel times to ranges");
@@ -68,8 +69,9 @@ void declare_filter(command_line::DeclaredOptions& declared, Options& options) {
   declared.number("sound_speed_std", auv.sound_speed_std, 0, 0.5, "error of a range, as a ratio of the range");
   declared.number("heading_bias_std_deg", options.heading_bias_std_deg, 0, 90, "steady error of the heading");
   declared.number("speed_scale_std", auv.filter.speed_scale_std, 0, 0.5, "scale error of the DVL, as a ratio");
-  declared.number("heading_noise_radprtHz", auv.filter.heading_noise_radprtHz, 0, 10,
-                  "noise of the heading, rad in 1 s; for a slow error s of time T: s sqrt(2 T)");
+  declared.number(
+      "heading_noise_radprtHz", auv.filter.heading_noise_radprtHz, 0, 10,
+      "random walk of the heading, rad in 1 s; for a slow error with std s and correlation time T: s sqrt(2 T)");
   declared.number("clock_std_ms", options.clock_std_ms, 0, 1e6, "error of the clock at the start, with 5 or 6 states");
   declared.number("clock_drift_std_ppm", options.clock_drift_std_ppm, 0, 1e4, "drift of the clock, with 6 states");
 }
@@ -135,6 +137,7 @@ int run(int argc, char** argv) {
   auv.use_ranges = !options.no_cooperation;
   auv.steer_by_dead_reckoning = options.steer == "dead_reckoning";
   auv.filter.heading_bias_std_rad = sim::degrees_to_radians(options.heading_bias_std_deg);
+  // Clock errors become errors of all ranges: 1 ms is 1.5 m.
   auv.filter.range_bias_std_m = auv.sound_speed_mps * 1e-3 * options.clock_std_ms;
   auv.filter.range_drift_std_mps = auv.sound_speed_mps * 1e-6 * options.clock_drift_std_ppm;
   auv.access = options.marine.access();

@@ -62,7 +62,7 @@ int run(int argc, char** argv) {
       .by_default({0, 0});
   options.number("start_yaw_deg", start_yaw_deg, -360, 360, "its heading at the start, counter-clockwise from east");
   options.number("speed_mps", rover.speed_mps, 0.05, 5, "speed of the rover");
-  options.number("seen_std_m", rover.seen_std_m, 0.001, 100, "error of a swarm_position sighting");
+  options.number("seen_std_m", rover.seen_std_m, 0.001, 100, "error of a position from swarm_position");
   avoid.declare(options);
   participation.declare(options);
   autonomy::set_help_end(

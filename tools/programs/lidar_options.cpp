@@ -12,9 +12,10 @@ void LidarOptions::declare(command_line::DeclaredOptions& options) {
           },
           "position of the lidar on the vehicle, forward and left")
       .by_default({0, 0});
-  options.number("lidar_yaw_deg", yaw_deg, -360, 360, "its direction, counter-clockwise from forward");
-  options.number("lidar_range_m", mount.range_m, 0.1, 1000, "a beam of this length has met nothing");
-  options.number("use_range_m", mount.use_range_m, 0.1, 1000, "beams are cut to this length");
+  options.number("lidar_yaw_deg", yaw_deg, -360, 360,
+                 "heading of the lidar on the vehicle, counter-clockwise from forward");
+  options.number("lidar_range_m", mount.range_m, 0.1, 1000, "a beam of at least this length is taken as a miss");
+  options.number("use_range_m", mount.use_range_m, 0.1, 1000, "beams are truncated to this length");
 }
 
 LidarMount LidarOptions::mounted() const {

@@ -67,7 +67,7 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
   autonomy::Localizer::Params& localizer = options.localizer;
   declared.publishes({"{vehicle}.{pose}", "{vehicle}.{map}"});
   declared.subscribes({"{vehicle}.odometry", "{vehicle}.lidar"});
-  declared.text("name", "NAME", options.name, "its name in the lockstep").required_in_worlds();
+  declared.text("name", "NAME", options.name, "its client name in the lockstep").required_in_worlds();
   declared.text("vehicle", "VEHICLE", options.vehicle, "vehicle that it localizes").required_in_worlds();
   declared
       .text("map_file", "FILE", options.map_file,
@@ -82,11 +82,13 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
         localizer.start = autonomy::Pose2{{numbers[0], numbers[1]}, 0};
       },
       "position of the vehicle at the start, east and north; without it, it can be anywhere in the map");
-  declared.number("start_yaw_deg", options.start_yaw_deg, -360, 360, "its heading then, counter-clockwise from east");
+  declared.number("start_yaw_deg", options.start_yaw_deg, -360, 360,
+                  "its heading at the start, counter-clockwise from east");
   declared.number("start_std_m", localizer.start_std_m, 0, 100, "error of that position");
   declared.number("start_std_deg", options.start_std_deg, 0, 180, "error of that heading");
   options.lidar.declare(declared);
-  declared.number("rest_mps", localizer.rest_mps, 0, 1, "odometry below it and below rest-radps is noise at rest");
+  declared.number("rest_mps", localizer.rest_mps, 0, 1,
+                  "below it and below rest-radps the vehicle counts as being at rest");
   declared.number("rest_radps", localizer.rest_radps, 0, 1, "its turn rate");
   declared.integer("min_particles", localizer.min_particles, 10, 1'000'000, "smallest number of particles");
   declared.integer("max_particles", localizer.max_particles, 10, 1'000'000, "largest number of particles");

@@ -31,7 +31,7 @@ struct State {
   std::int64_t next_map_utime = 0;
 };
 
-/// Longest and total CPU time of a scan, for --timing: no part of the state, because nothing depends on it.
+/// Longest and total CPU time of a scan, for --timing: not part of the state, because nothing depends on it.
 struct Timing {
   double total_s = 0, max_s = 0;
   std::int64_t scans = 0;
@@ -49,6 +49,7 @@ int map(const Options& options) {
   client.subscribe<shoal::planar_lidar_t>(
       prefix + "lidar", [&](const shoal::planar_lidar_t& scan) { state.mapper.receive(scan); }, Finite::required);
   const int exit_code = autonomy::take_part(client, options.participation, state, [&](std::int64_t utime) {
+    // CPU time, not wall time: the program shares the machine with the simulator.
     const std::clock_t started = std::clock();
     const auto estimate = state.mapper.step();
     if (!estimate) return;
@@ -88,9 +89,8 @@ void declare_map(command_line::DeclaredOptions& declared, autonomy::OccupancyMap
           "area of the map")
       .by_default({map.low_W.x(), map.low_W.y(), map.high_W.x(), map.high_W.y()});
   declared.number("cell_m", map.cell_m, 0.03, 0.1, "side of a cell");
-  declared.choice(
-      "memory", memory, {"forgetting", "static"},
-      "forgetting: less is known of what was not seen for longer than it usually lasts; static: all evidence stays");
+  declared.choice("memory", memory, {"forgetting", "static"},
+                  "forgetting: evidence fades when it is older than cells usually last; static: all evidence stays");
   declared.number("dwell_s", map.dwell_s, 1, 1e9, "expected time between changes of a cell in which none was seen");
   declared.number("min_dwell_s", map.min_dwell_s, 1, 1e9, "shortest such time, however often a cell changes");
 }
@@ -99,7 +99,7 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
   autonomy::Mapper::Params& mapper = options.mapper;
   declared.publishes({"{vehicle}.{pose}", "{vehicle}.{map}"});
   declared.subscribes({"{vehicle}.odometry", "{vehicle}.lidar"});
-  declared.text("name", "NAME", options.name, "its name in the lockstep").required_in_worlds();
+  declared.text("name", "NAME", options.name, "its client name in the lockstep").required_in_worlds();
   declared.text("vehicle", "VEHICLE", options.vehicle, "vehicle that maps").required_in_worlds();
   declared.text("pose", "CHANNEL", options.pose, "channel of its estimated pose, after VEHICLE.");
   declared.text("map", "CHANNEL", options.map, "channel of its map, after VEHICLE.");
@@ -111,13 +111,15 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
           },
           "position of the vehicle at the start, east and north")
       .by_default({0, 0});
-  declared.number("start_yaw_deg", options.start_yaw_deg, -360, 360, "its heading then, counter-clockwise from east");
+  declared.number("start_yaw_deg", options.start_yaw_deg, -360, 360,
+                  "its heading at the start, counter-clockwise from east");
   options.lidar.declare(declared);
-  declared.number("rest_mps", mapper.rest_mps, 0, 1, "odometry below it and below rest-radps is noise at rest");
+  declared.number("rest_mps", mapper.rest_mps, 0, 1,
+                  "below it and below rest-radps the vehicle counts as being at rest");
   declared.number("rest_radps", mapper.rest_radps, 0, 1, "its turn rate");
   declare_map(declared, mapper.map, options.memory);
   declared.number("map_every_s", options.map_every_s, 0.1, 1e9, "simulated seconds between published maps");
-  declared.flag("timing", options.timing, "prints the CPU time of the scans at the end");
+  declared.flag("timing", options.timing, "print the CPU time of the scans at the end");
   options.participation.declare(declared);
   autonomy::set_help_end(declared, {"shoal-mapper --name mapper --vehicle rover1 --area-m '[-22,-16,22,16]'"},
                          "It reads VEHICLE.odometry and VEHICLE.lidar, and publishes shoal.estimate_t on "

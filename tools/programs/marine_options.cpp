@@ -26,7 +26,8 @@ void MarineOptions::declare(command_line::DeclaredOptions& options) {
   options
       .tuple(
           "follow_offset_m", {"ahead", "left"}, sim::any_place(),
-          [this](const auto& numbers) { follow_offset_m = numbers; }, "place beside that vehicle, by its course")
+          [this](const auto& numbers) { follow_offset_m = numbers; },
+          "position relative to that vehicle and its course")
       .needs({"follow"});
   options.text("leader", "VEHICLE", leader, "leader of the formation in which to keep a place; it must send its state");
   std::vector<std::string> formations = formation_names();
@@ -40,16 +41,17 @@ void MarineOptions::declare(command_line::DeclaredOptions& options) {
   options
       .tuple(
           "formation_offset_m", {"ahead", "left"}, sim::any_place(),
-          [this](const auto& numbers) { formation_offset = numbers; }, "place beside the leader, by its course")
+          [this](const auto& numbers) { formation_offset = numbers; }, "position relative to the leader and its course")
       .needs({"leader"});
   options.exactly_one({"waypoints_m", "circle_m", "zigzag_m", "follow", "leader"});
   // Parameters of all behaviors.
-  options.flag("loop", loop, "restart the route after its last waypoint; without it the vehicle stops there");
-  options.number("speed_mps", speed_mps, 0.05, 10, "speed through the water; when it follows, the largest");
+  options.flag("loop", loop, "restart the route after its last waypoint; otherwise the vehicle stops there");
+  options.number("speed_mps", speed_mps, 0.05, 10, "speed through the water; the maximum when it follows");
   sending.declare(options, "its state");
 }
 
 std::unique_ptr<HelmBehavior> MarineOptions::make(const std::string& name) const {
+  // The parser allows only one of these.
   if (!circle_m.empty()) return make_circle({circle_m[0], circle_m[1]}, circle_m[2], speed_mps);
   if (!zigzag_m.empty())
     return make_zigzag({zigzag_m[0], zigzag_m[1]}, {zigzag_m[2], zigzag_m[3]}, zigzag_m[4], zigzag_legs.value_or(1),
@@ -83,7 +85,7 @@ void AccessOptions::declare(command_line::DeclaredOptions& options, const std::s
   options.integer("slots", slots, 1, 1000, "slots in a cycle").needs({"slot"});
   options.number("slot_s", slot_s, 0.1, 3600, "length of a slot");
   options.number("guard_s", guard_s, 0, 3600,
-                 "guard time at the end of a slot; without it all but the first second, or the second half of a short "
+                 "guard time at the end of a slot; default: all but the first second, or the second half of a short "
                  "slot");
   options.number("random_s", random_s, 0, 3600, "sends " + what + " at random times with this mean interval; 0: never");
   options.seed("seed", seed, "seed of the random times");

@@ -48,14 +48,14 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
   autonomy::Patrol::Params& patrol = options.patrol;
   declared.publishes({"{vehicle}.drive.cmd"});
   declared.subscribes({"{vehicle}.odometry", "{vehicle}.lidar", "{vehicle}.{pose}", "{vehicle}.{path}"});
-  declared.text("name", "NAME", options.name, "its name in the lockstep").required_in_worlds();
-  declared.text("vehicle", "VEHICLE", options.vehicle, "vehicle that drives rounds").required_in_worlds();
+  declared.text("name", "NAME", options.name, "its client name in the lockstep").required_in_worlds();
+  declared.text("vehicle", "VEHICLE", options.vehicle, "vehicle that patrols").required_in_worlds();
   declared.text("pose", "CHANNEL", options.pose, "channel of its estimated pose, after VEHICLE.");
   declared.tuples(
       "waypoints_m", {"x", "y"}, 2, sim::any_place(),
       [&](const auto& lists) { patrol.waypoints_W = autonomy::points_of(lists); },
       "waypoints of a round, east and north; it charges at the first");
-  declared.text("path", "CHANNEL", options.path, "instead: channel of paths to drive along, after VEHICLE.");
+  declared.text("path", "CHANNEL", options.path, "instead of waypoints: channel of paths to follow, after VEHICLE.");
   declared.exactly_one({"waypoints_m", "path"});
   declared.number("speed_mps", patrol.speed_mps, 0.05, 5, "speed of the vehicle");
   declared.number("pause_s", patrol.pause_s, 0, 1e6, "pause at each waypoint");
@@ -63,9 +63,9 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
   declared.number("reached_m", patrol.reached_m, 0.05, 100, "acceptance radius of a waypoint");
   declared.number("give_up_s", patrol.give_up_s, 1, 1e6, "a waypoint is skipped after this time without progress");
   declared.number("lost_std_m", patrol.lost_std_m, 0.01, 1000,
-                  "standard deviation of the estimate from which on it turns on the spot");
-  declared.number("search_radps", patrol.search_radps, 0.01, 10, "turn rate of this");
-  declared.number("search_drive_s", patrol.search_drive_s, 0, 1e6, "after each full turn it drives for this long");
+                  "standard deviation of the estimate above which it turns on the spot");
+  declared.number("search_radps", patrol.search_radps, 0.01, 10, "turn rate on the spot");
+  declared.number("search_drive_s", patrol.search_drive_s, 0, 1e6, "time for which it drives after each full turn");
   options.participation.declare(declared);
   autonomy::set_help_end(declared,
                          {"shoal-patrol --name patrol --vehicle rover1 --waypoints-m '[[-18,0],[18,4],[18,-4]]'"},
@@ -76,7 +76,7 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
 int run(int argc, char** argv) {
   Options options;
   options.participation.period_s = 1;
-  CLI::App app{"Drives rounds by the pose that another program estimates, in lockstep with `shoal run`.",
+  CLI::App app{"Patrols waypoints by the pose that another program estimates, in lockstep with `shoal run`.",
                "shoal-patrol"};
   command_line::DeclaredOptions declared(app);
   declare(declared, options);

@@ -38,10 +38,10 @@ int plan(const Options& options) {
   // A single write, because the programs of a run share a terminal.
   std::cerr << fmt::format("{}: {} goals reached, {} given up, {} paths planned{}\n", options.name, planner.reached(),
                            planner.given_up(), planner.plans(),
-                           planner.has_map() ? "" : "; no map came on " + prefix + options.map);
+                           planner.has_map() ? "" : "; no map arrived on " + prefix + options.map);
   if (planner.has_map() && planner.used_scans() == 0)
     std::cerr << fmt::format(
-        "{}: no scan on {}lidar had the time of an estimate on {}{}: it planned by the map alone\n", options.name,
+        "{}: no scan on {}lidar matched the time of an estimate on {}{}: it planned with the map alone\n", options.name,
         prefix, prefix, options.pose);
   return exit_code;
 }
@@ -50,7 +50,7 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
   autonomy::Planner::Params& planner = options.planner;
   declared.publishes({"{vehicle}.{path}"});
   declared.subscribes({"{vehicle}.{map}", "{vehicle}.lidar", "{vehicle}.{pose}", "{vehicle}.{goals}"});
-  declared.text("name", "NAME", options.name, "its name in the lockstep").required_in_worlds();
+  declared.text("name", "NAME", options.name, "its client name in the lockstep").required_in_worlds();
   declared.text("vehicle", "VEHICLE", options.vehicle, "vehicle for which it plans").required_in_worlds();
   declared.text("pose", "CHANNEL", options.pose, "channel of its estimated pose, after VEHICLE.");
   declared.text("map", "CHANNEL", options.map, "channel of the map, after VEHICLE.");
@@ -59,10 +59,11 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
   declared.tuples(
       "goals_m", {"x", "y"}, 2, sim::any_place(),
       [&](const auto& lists) { planner.goals_W = autonomy::points_of(lists); },
-      "goals until others are received, east and north, one after another");
-  declared.flag("loop", planner.loop, "from the last of them to the first");
-  declared.number("keep_m", planner.costs.keep_m, 0.05, 100, "smallest distance of its middle to an obstacle");
-  declared.number("prefer_m", planner.costs.prefer_m, 0.05, 100, "distance from which on a path costs no more");
+      "goals until others are received, east and north, in this order");
+  declared.flag("loop", planner.loop, "continue from the last goal with the first");
+  declared.number("keep_m", planner.costs.keep_m, 0.05, 100, "smallest clearance between its center and an obstacle");
+  declared.number("prefer_m", planner.costs.prefer_m, 0.05, 100,
+                  "clearance from which on a path has no additional cost");
   declared.number("clearance_cost", planner.costs.clearance_cost, 0, 1000,
                   "additional cost of a meter at keep-m; one far from obstacles costs 1");
   declared.choice("unknown_ground", options.unknown_ground, {"enter", "avoid"},
@@ -71,13 +72,13 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
   declared.number("cell_m", planner.cell_m, 0.02, 1, "side of its cells, rounded to a multiple of those of the map");
   options.lidar.declare(declared);
   declared.number("memory_s", planner.memory_s, 1, 1e6,
-                  "how long it believes what the lidar saw and sees no longer; longer, if it was seen for longer");
+                  "how long it keeps an obstacle that the lidar no longer sees; longer if it was seen for longer");
   declared.number("lost_std_m", planner.lost_std_m, 0.01, 1000,
-                  "standard deviation of the estimate from which on it plans nothing");
+                  "standard deviation of the estimate above which it does not plan");
   declared.number("reached_m", planner.reached_m, 0.05, 100, "acceptance radius of a goal");
-  declared.number("stray_m", planner.stray_m, 0.1, 1000, "it plans again at this distance from the path");
-  declared.number("retry_s", planner.retry_s, 0.1, 1e6, "when there was no path, it plans again after this time");
-  declared.number("give_up_s", planner.give_up_s, 1, 1e6, "a goal is given up after this time without a path");
+  declared.number("stray_m", planner.stray_m, 0.1, 1000, "distance from the path at which it plans again");
+  declared.number("retry_s", planner.retry_s, 0.1, 1e6, "time after which it plans again when there was no path");
+  declared.number("give_up_s", planner.give_up_s, 1, 1e6, "time without a path after which it gives up a goal");
   options.participation.declare(declared);
   autonomy::set_help_end(declared, {"shoal-planner --name planner --vehicle rover1 --goals-m '[[10,0],[10,5]]'"},
                          "It reads shoal.occupancy_grid_t on VEHICLE.map, VEHICLE.lidar, shoal.estimate_t on "

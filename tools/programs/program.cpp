@@ -73,6 +73,7 @@ int take_part(shoal::Client& client, const Participation& participation, Memory 
               const std::function<void(std::int64_t utime)>& decide) {
   const StopBySignal stop(client);
   bool lost = false;
+  // A program whose memory does not reach back would continue with knowledge of a future that never came.
   client.on_rewind([&](std::int64_t utime) {
     if (memory.rewind(utime)) return;
     lost = true;

@@ -87,11 +87,11 @@ void declare(command_line::DeclaredOptions& options, Ranger::Params& ranger) {
   options.number("speed_mps", ranger.speed_mps, 0.05, 10, "speed through the water");
   options.number("pivot_m", ranger.pivot_m, 0, 100,
                  "pivot point ahead of the origin, about which the vehicle slips outwards in a turn");
-  options.number("altitude_min_m", ranger.altitude_min_m, 0, 1000, "smallest height over the bottom");
+  options.number("altitude_min_m", ranger.altitude_min_m, 0, 1000, "smallest altitude over the bottom");
   options.number("sonar_ahead_m", ranger.sonar_ahead_m, -10, 10, "forward sonar ahead of the origin of the vehicle");
   options.number("range_std_m", ranger.range_std_m, 0.001, 100, "error of a range to a wall");
   options.number("range_max_m", ranger.range_max_m, 1, 1000, "longer ranges are not used");
-  options.number("current_std_mps", ranger.filter.current_std_mps, 0, 10, "current, of which it knows nothing");
+  options.number("current_std_mps", ranger.filter.current_std_mps, 0, 10, "standard deviation of the unknown current");
 }
 
 int run(int argc, char** argv) {

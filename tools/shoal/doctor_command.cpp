@@ -27,10 +27,11 @@ int examine(const std::string& url) {
   for (const bridges::Finding& finding : bridges::check_network(url)) {
     std::cout << word(finding.verdict) << finding.name << ": " << finding.text << '\n';
     usable = usable && finding.verdict != bridges::Finding::Verdict::bad;
+    // Several findings may have the same remedy.
     for (const std::string& each : finding.commands)
       if (std::find(commands.begin(), commands.end(), each) == commands.end()) commands.push_back(each);
   }
-  if (!commands.empty()) std::cout << "\nTo mend it, type as root:\n";
+  if (!commands.empty()) std::cout << "\nTo fix it, run as root:\n";
   for (const std::string& command : commands) std::cout << "  " << command << '\n';
   std::cout << (usable ? "\nLCM is usable here.\n" : "\nLCM is not usable here.\n");
   return usable ? exit_ok : exit_bus;

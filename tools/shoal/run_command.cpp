@@ -145,13 +145,12 @@ void add_snapshot_options(CLI::App& command, RunArguments& arguments) {
       .add_option("--snapshot-every", arguments.run.snapshot_every_s, "interval between snapshots in simulated seconds")
       ->type_name("S")
       ->check(number_from(0.001, 1e9));
-  command
-      .add_option("--snapshots", arguments.run.snapshots, "directory of snapshot files; without it RESULTS/snapshots")
+  command.add_option("--snapshots", arguments.run.snapshots, "directory of snapshot files; default RESULTS/snapshots")
       ->type_name("DIR");
   // Rewinding.
   command
       .add_option("--rewind-s", arguments.run.rewind_s,
-                  "how far the run can be rewound, in simulated seconds; without it 60 on a bus or terminal")
+                  "how far the run can be rewound, in simulated seconds; default 60 on a bus or terminal")
       ->type_name("S")
       ->check(number_from(0, 1e6));
   command.add_option("--rewind-mb", arguments.run.rewind_MB, "memory for the rewind history, MB")
@@ -170,14 +169,14 @@ void add_output_options(CLI::App& command, RunArguments& arguments) {
       ->type_name("MB")
       ->check(number_from(0.1, 1e9))
       ->needs(record);
-  command.add_flag("--overwrite", arguments.run.overwrite, "the record and snapshots may replace files");
+  command.add_flag("--overwrite", arguments.run.overwrite, "let the record and snapshots replace existing files");
   command.add_flag("--special-files", arguments.run.special_files,
-                   "the world and the record may be pipes and devices, such as /dev/stdin");
+                   "let the world and the record be pipes or devices, such as /dev/stdin");
   command.add_option("--results", arguments.run.results, "directory for summary.json, CSV files and plots")
       ->type_name("DIR");
   command.add_flag_callback(
       "--no-plots", [&] { arguments.run.plots = false; }, "results without plots");
-  command.add_flag("--quiet", arguments.run.quiet, "no progress and no summary");
+  command.add_flag("--quiet", arguments.run.quiet, "print neither progress nor summary");
 }
 
 void add_bus_options(CLI::App& command, RunArguments& arguments) {
@@ -187,7 +186,7 @@ void add_bus_options(CLI::App& command, RunArguments& arguments) {
       ->check(one_of({"lcm", "none"}).description(""));
   add_lcm_url_option(command, arguments.run.lcm_url);
   command.add_flag("--lcm-shared", arguments.run.lcm_shared,
-                   "start even if another simulator is on the bus; without it the exit code is then 4");
+                   "start even if another simulator is on the bus; otherwise the exit code is 4");
   auto* key = command.add_flag("--control-key", arguments.run.control_key,
                                "require the key of the run for control, even if its bus does not leave this machine");
   command
@@ -232,15 +231,13 @@ static void add_run_command(CLI::App& app, int& exit_code) {
   add_bus_options(*command, *arguments);
   add_output_options(*command, *arguments);
   command->add_flag("--view", arguments->with_page, "serve a live page of the run in 3-D, and print its address");
-  command
-      ->add_flag("--watch", arguments->watch,
-                 "with --view: run the world again each time that one of its files is saved")
+  command->add_flag("--watch", arguments->watch, "with --view: rerun the world whenever one of its files is saved")
       ->needs("--view");
   add_open_option(*command, arguments->open)->needs("--view");
   add_page_options(*command, arguments->view);
   command
       ->add_option("--drive-profile", arguments->view.drive_profile,
-                   "profile by which pages drive vehicles; see `shoal drive --print-profile`")
+                   "profile with which pages drive vehicles; see `shoal drive --print-profile`")
       ->type_name("FILE");
   add_snapshot_options(*command, *arguments);
   add_threads_option(*command, arguments->run.threads);

@@ -189,9 +189,9 @@ static void add_spy_command(CLI::App& app, int& exit_code) {
   add_plugin_option(*command);
   command_line::set_help_end(
       *command, {{"shoal spy", "shoal spy rover1.odometry", "shoal spy --duration 5 > channels.txt"},
-                 {{0, "success, also when no message was received"}, {2, "wrong usage"}, {4, "bus error"}},
-                 {"On a terminal the table is drawn again twice a second.  In a pipe or file there is a table every "
-                  "second, or with --duration one of all of it; or the fields of each message of CHANNEL."}});
+                 {{0, "success, even when no message was received"}, {2, "wrong usage"}, {4, "bus error"}},
+                 {"On a terminal the table is redrawn twice a second.  A pipe or file gets a table every second, or "
+                  "with --duration one of the whole time; with CHANNEL the fields of each of its messages."}});
   command->callback([arguments, &exit_code] { exit_code = spy(*arguments); });
 }
 

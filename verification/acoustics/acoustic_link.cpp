@@ -187,6 +187,7 @@ LinkBudget link_budget(const AcousticLink& link, const sim::AcousticsConfig& aco
   budget.absorption = -sim::absorption_loss(budget.range_m, budget.absorption_dBpkm);
   const sim::AmbientNoise noise = acoustics.noise.with_wind(medium.mean_wind_mps());
   budget.wind_mps = noise.wind_mps;
+  // Refraction changes the angles at which the sound leaves and arrives, and with them the gains of both transducers.
   sim::Vector3d leaves_W = displacement_W, arrives_W = displacement_W;
   if (sound_bends(acoustics, medium))
     std::tie(leaves_W, arrives_W) = bend(budget, link, acoustics, medium, water_depth_m);
@@ -198,6 +199,8 @@ LinkBudget link_budget(const AcousticLink& link, const sim::AcousticsConfig& aco
   budget.level = link.source_level + budget.from_gain + budget.spreading + budget.absorption + budget.to_gain;
   budget.noise_per_Hz = noise.spectral_level(link.centre_Hz / 1000);
   budget.noise_reduction = sim::directivity_index(link.to.directivity, link.centre_Hz, c_mps);
+  // A directional receiver receives less of a noise that comes from all sides: by its directivity index (Urick 1983,
+  // chapter 3).
   budget.noise = noise.band_level(link.centre_Hz, link.bandwidth_Hz) - budget.noise_reduction;
   budget.snr = budget.level - budget.noise;
   if (acoustics.multipath) {

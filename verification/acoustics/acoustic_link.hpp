@@ -22,7 +22,7 @@ struct AcousticPacket {
   std::optional<double> bandwidth_Hz;  ///< unset: that of the link
 };
 
-/// Parses the text `fsk:80:32` (modulation, bit/s, bytes).  Returns nothing for any other form.
+/// Parses the text `fsk:80:32` (modulation, bit/s, bytes).  Returns std::nullopt for any other form.
 std::optional<AcousticPacket> parse_packet(const std::string& text);
 
 /// Returns a frame of each rate of the WHOI Micro-Modem, 0 to 6, in its own bandwidth.

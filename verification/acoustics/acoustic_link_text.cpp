@@ -139,6 +139,7 @@ void draw_over_range(const std::vector<RangeRow>& rows, const std::vector<Acoust
                                                          packets[i].bit_rate_bps, packets[i].bytes)));
   std::ofstream(scratch.path / "plot.gp") << script << "\nunset multiplot\n";
   if (experiment::run_gnuplot(scratch.path.string(), "plot.gp", std::chrono::seconds(30), [] { return false; })) return;
+  // gnuplot names its first error in the first line.
   std::ifstream reported(scratch.path / "plot.log");
   std::string line;
   std::getline(reported, line);

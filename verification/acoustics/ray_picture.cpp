@@ -41,7 +41,7 @@ RayField ray_field(double source_m, double range_m, double frequency_Hz, const s
   const sim::MultipathConfig* const multipath = acoustics.multipath ? &*acoustics.multipath : nullptr;
   const double water_m =
       multipath != nullptr && multipath->water_depth_m ? *multipath->water_depth_m : water_depth_m.value_or(HUGE_VAL);
-  // Without a bottom: the depths about which something is known.
+  // Without a bottom the image shows the depths of the profile and of both ends.
   const std::vector<double> rows_m = medium.profile_depths_m();
   field.deepest_m =
       std::isfinite(water_m) ? water_m : std::max({100.0, 2 * source_m, rows_m.empty() ? 0 : 1.5 * rows_m.back()});

@@ -18,7 +18,7 @@ struct BenchOptions {
   std::vector<std::string> sets;  ///< path=value
 };
 
-/// What takes the time: the stages of a step, then the programs.
+/// Consumers of CPU time: the stages of a step, then the programs.
 inline constexpr std::size_t bench_parts = sim::step_stage_names.size() + 1;
 /// Returns the name of a part.
 const char* bench_part_name(std::size_t part);

@@ -3,7 +3,7 @@
 
 namespace verification {
 
-/// For comparison with figures of before `land`.
+/// Kept for comparison with figures from before the scene `land` existed.
 BenchScene scale_scene() {
   return {"scale",
           "as land, but the lidars stand above the hulls and see no rovers, which push each other; kept for comparison",

@@ -158,7 +158,7 @@ std::int64_t steps_to(double t, double step_s, const FidelityReference& referenc
   if (std::abs(static_cast<double>(steps) * step_s - t) > 1e-7)
     sim::throw_config_error(
         {sim::intern_file_name(reference.file), 0, 0}, "",
-        "a step of " + sim::number_text(step_s) + " s does not meet the row at t = " + sim::number_text(t) + " s");
+        "a step of " + sim::number_text(step_s) + " s does not reach the row at t = " + sim::number_text(t) + " s");
   return steps;
 }
 
@@ -262,6 +262,8 @@ FidelityResult run(const FidelityCase& of, const FidelityOptions& options) {
   const FidelityReference reference = read_fidelity_reference(of.reference);
   CaseWorld world(of, reference, options, options.step_s.value_or(of.step_s));
   std::optional<CaseWorld> finer;
+  // The results of both steps are extrapolated to step zero, so that models are compared and not the errors of
+  // integration.
   if (!options.step_s) finer.emplace(of, reference, options, of.step_s / 2);
   FidelityResult result;
   result.of = of;
@@ -272,6 +274,7 @@ FidelityResult run(const FidelityCase& of, const FidelityOptions& options) {
     if (finer) ours = at_step_zero(ours, finer->advance_to(row));
     result.t.push_back(row[0]);
     add_row(result, sums, state_of(of, reference, row), ours);
+    // Mutations only ask whether a bound is missed; the rest of the run would be wasted.
     if (!options.until_missed) continue;
     compare(result, sums, reference.rows.size());
     if (!result.missed.empty()) return result;

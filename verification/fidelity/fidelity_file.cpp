@@ -27,7 +27,7 @@ struct CaseEntry {
     in.read_name("name", name, "name of the case");
     in.read("text", text, "a sentence for the report");
     in.require("reference");
-    in.read("reference", reference, "CSV file, from the folder of this file");
+    in.read("reference", reference, "CSV file, relative to the folder of this file");
     in.read_raw("world", world, "dotted path: value, changes of the world, beside those of the group");
     in.read_raw("overrides", overrides, "dotted path: value, changes of the vehicle, beside those of the group");
     in.read("bars", bars, "instead of the group's");
@@ -48,7 +48,7 @@ struct GroupEntry {
     in.read_name("name", name, "name of the group");
     in.read("title", title, "heading in the report");
     in.require("vehicle");
-    in.read("vehicle", vehicle, "vehicle file, from the folder of this file");
+    in.read("vehicle", vehicle, "vehicle file, relative to the folder of this file");
     if (const sim::ConfigNode* node = in.has("vehicle") ? in.child("vehicle") : nullptr) vehicle_place = node->place;
     in.read_raw("world", world, "dotted path: value, such as `physics.gravity_mps2: 9.82`");
     in.read_raw("overrides", overrides, "dotted path: value, changes of the vehicle");
@@ -68,7 +68,7 @@ struct CaseFile {
   void read(sim::ParamReader& in) {
     in.read("shoal", shoal, sim::between(1, 1), "version of the format");
     in.read("text", text, "Markdown for the top of the report");
-    in.read_list("without_effect", without_effect, "coefficient", "coefficients that no case can see");
+    in.read_list("without_effect", without_effect, "coefficient", "coefficients that no case can detect");
     in.require("groups");
     in.read_list("groups", groups, "group", "vehicles with their cases");
   }
@@ -109,7 +109,7 @@ void FidelityWithoutEffect::read(sim::ParamReader& in) {
   in.require("coefficient");
   in.read("coefficient", coefficient, "its name in the table of `--mutate`");
   in.require("why");
-  in.read("why", why, "why it changes no motion");
+  in.read("why", why, "why it affects no motion");
 }
 
 void FidelityBars::read(sim::ParamReader& in) {

@@ -145,6 +145,7 @@ bool FidelityMutation::unseen() const {
 }
 
 std::vector<FidelityCoefficient> fidelity_coefficients(const FidelityCase& of) {
+  // Overrides belong to the case, not to the vehicle, and are not mutated.
   FidelityCase bare = of;
   bare.overrides = {};
   const std::string file = of.place.file != nullptr ? *of.place.file : of.name;

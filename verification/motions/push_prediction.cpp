@@ -41,7 +41,7 @@ sim::JointMotion held_pose(const sim::JointMotion& motion, double at_s) {
   return held;
 }
 
-/// Returns the greatest displacement after a push of a pose that is held, over all directions, m.
+/// Returns the largest displacement after a push of a pose that is held, over all directions, m.
 double static_displacement_m(const motion::StageOptions& options, const sim::JointMotion& pose,
                              const motion::PushOptions& push) {
   motion::MotionStage stage(options, pose);
@@ -59,7 +59,7 @@ double static_displacement_m(const motion::StageOptions& options, const sim::Joi
 
 /// Draws the pushes of a motion between two times of the run, by time.
 std::vector<motion::Push> drawn_pushes(const PredictionOptions& options, double from_s, sim::Random& random) {
-  // Within the chord of two directions that both withstand the greatest push.
+  // Within the chord of two directions that both withstand the largest push.
   const double greatest_mps = options.push.greatest_mps * std::cos(std::numbers::pi / options.push.directions);
   std::vector<motion::Push> pushes(static_cast<std::size_t>(options.pushes));
   for (motion::Push& push : pushes) {
@@ -133,7 +133,7 @@ Detection detection_by_margin(const std::vector<PushTrial>& trials) {
 }
 
 Detection detection_by_static_check(const std::vector<PushTrial>& trials, bool by_push) {
-  // From the largest score down, each as the threshold.
+  // Each score is the threshold once, from the largest down.
   std::vector<std::pair<double, bool>> scores;
   Detection now;
   for (const PushTrial& trial : trials) {

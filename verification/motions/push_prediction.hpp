@@ -56,7 +56,7 @@ struct Detection {
 /// Counts how often the push margin was right: a fall is predicted when a push is above it.
 Detection detection_by_margin(const std::vector<PushTrial>& trials);
 
-/// As detection_by_margin, for the static check: a fall is predicted when its displacement, times the push when
+/// Like detection_by_margin, for the static check: a fall is predicted when its displacement, times the push when
 /// `by_push`, is above a threshold.  The threshold is the one of the best F1 over the trials themselves.
 Detection detection_by_static_check(const std::vector<PushTrial>& trials, bool by_push);
 

@@ -44,6 +44,7 @@ sim::JointMotion random_motion(const std::vector<sim::MotionPose>& poses, const 
     sim::MotionKey& key = motion.keys.emplace_back();
     key.at_s = at_s;
     at_s += drawn_between(options.least_key_s, options.greatest_key_s, random);
+    // The first key is a pose in which the vehicle stands, so that every fall is due to the motion.
     const double offset = i == 0 ? 0 : options.offset;
     for (const auto& [joint, value] : poses[random.integer_below(static_cast<std::uint32_t>(poses.size()))].joints)
       key.joints.emplace_back(joint, drawn_between(value - offset, value + offset, random));

@@ -30,7 +30,7 @@ struct DogParameters {
   std::optional<double> friction;      ///< of the paws
   std::optional<double> effort_Nm;     ///< greatest torque of the leg servos
   std::optional<double> gain_per_s;    ///< of the leg servos
-  std::optional<double> speed_factor;  ///< of the greatest velocities of the leg servos
+  std::optional<double> speed_factor;  ///< factor of the maximum velocities of the leg servos
   std::optional<double> play_rad;      ///< of the gears of the leg servos
   std::optional<double> flap_factor;   ///< gain of the flaps over that of swings and knees
 };

@@ -32,6 +32,7 @@ StandingPoses standing_poses(const sim::WorldConfig& world, const std::string& v
   while (result.poses.size() < static_cast<std::size_t>(count)) {
     if (result.tried >= max_tried_per_pose * count)
       throw std::runtime_error("vehicle '" + vehicle + "' stands in too few of its random poses");
+    // Each trial has its own random numbers, so the first poses are the same for any `count`.
     random.begin_step(result.tried++);
     sim::JointValues pose;
     for (const motion::Leg& leg : legs) {

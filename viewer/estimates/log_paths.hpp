@@ -15,8 +15,8 @@ namespace viewer {
 class LogPaths {
  public:
   LogPaths() = default;
-  /// Reads the paths of a log up to `until_s`.  Of several branches the last one counts.  Throws bridges::BusError when
-  /// the log cannot be read.
+  /// Reads the paths of a log up to `until_s`.  If it has several branches, the last one counts.  Throws
+  /// bridges::BusError when the log cannot be read.
   LogPaths(const std::string& log, double until_s);
 
   /// Returns the last path of each channel up to a time, by channel; an empty one ends that before it.

@@ -11,7 +11,7 @@
 
 namespace viewer {
 
-/// Where a vehicle believes to be, by a message of one of its programs.
+/// Estimated pose of a vehicle, from a message of one of its programs.
 struct VehicleEstimate {
   std::int64_t utime = 0;  ///< at which it was valid, by the clock of the vehicle
   sim::Vector3d position_m = sim::Vector3d::Zero();
@@ -20,7 +20,7 @@ struct VehicleEstimate {
 };
 
 /// Reads shoal.estimate_t on any channel, and shoal.pose_t on `VEHICLE.estimate`: on others a pose may be anything,
-/// such as a goal.  Returns nothing for other messages, and for a position that is not finite.  Throws
+/// such as a goal.  Returns std::nullopt for other messages, and for a position that is not finite.  Throws
 /// shoal::MessageError when the message is damaged.
 std::optional<VehicleEstimate> read_estimate(std::string_view channel, std::span<const std::byte> payload);
 

@@ -34,9 +34,11 @@ std::optional<VehiclePath> read_path(std::span<const std::byte> payload) {
   VehiclePath path{message.utime, {}, message.loop != 0};
   const std::size_t size = message.x_m.size(), kept = std::min(size, VehiclePath::max_points);
   path.points.reserve(kept);
+  // Long paths are thinned evenly: a page cannot show more points than it has pixels.
   for (std::size_t i = 0; i < kept; ++i) {
     const std::size_t at = spaced(i, kept, size);
     const VehiclePath::Point point{message.x_m[at], message.y_m[at], message.depth_m[at]};
+    // A wild value would stretch the view until nothing else can be seen; NaN depths mean 'as before' and pass.
     const bool is_near = std::abs(point.x_m) <= farthest_m && std::abs(point.y_m) <= farthest_m;
     if (!is_near || std::abs(point.depth_m) > farthest_m) return std::nullopt;
     path.points.push_back(point);

@@ -32,8 +32,8 @@ struct VehiclePath {
   bool leads_along(const VehiclePath& other) const { return points == other.points && loop == other.loop; }
 };
 
-/// Reads shoal.waypoints_command_t: the path of a planner, or the route of an autopilot.  Returns nothing for other
-/// messages, and for points that are not finite or farther away than 1e7 m.  Throws shoal::MessageError when the
+/// Reads shoal.waypoints_command_t: the path of a planner, or the route of an autopilot.  Returns std::nullopt for
+/// other messages, and for points that are not finite or farther away than 1e7 m.  Throws shoal::MessageError when the
 /// message is damaged.
 std::optional<VehiclePath> read_path(std::span<const std::byte> payload);
 

@@ -89,6 +89,7 @@ std::string AviFile::header() const {
 void AviFile::add(const sim::Image8& frame) {
   sim::encode_jpeg(frame, jpeg_quality, jpeg_);
   const auto bytes = static_cast<std::uint32_t>(jpeg_.size());
+  // Sizes in RIFF have 32 bits. The index, 16 bytes per frame, is still to come.
   if (data_bytes_ + bytes + 16 * entries_.size() > max_bytes)
     throw FilmError(fmt::format("{}: larger than {} bytes, which an .avi may have; write an .mp4, or a shorter film",
                                 file_, max_bytes));
@@ -96,6 +97,7 @@ void AviFile::add(const sim::Image8& frame) {
   max_frame_bytes_ = std::max(max_frame_bytes_, bytes);
   std::string data = "00dc" + u32(bytes);
   data.append(reinterpret_cast<const char*>(jpeg_.data()), jpeg_.size());
+  // Chunks of RIFF begin at even offsets.
   if (bytes % 2 != 0) data += '\0';
   write(data);
   data_bytes_ += data.size();

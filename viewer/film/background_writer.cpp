@@ -19,6 +19,8 @@ void BackgroundWriter::write() {
   while (true) {
     changed_.wait(lock, [this] { return ending_ || !waiting_.empty(); });
     if (waiting_.empty()) return;
+    // References into a deque survive push_back(), so the frame is encoded without the lock, and counts as waiting
+    // until it is done.
     const sim::Image8& frame = waiting_.front();
     lock.unlock();
     std::exception_ptr error;

@@ -215,7 +215,7 @@ SceneView view_of_camera(const sim::World& world, const std::string& name) {
     if (camera == nullptr) continue;
     names.push_back(device->vehicle().name() + "." + device->config().name);
     if (name != names.back() && name != device->full_name()) continue;
-    // Its lens and pose.
+    // Lens and pose of the camera.
     const sim::DeviceConfig& config = device->config();
     const sim::Vehicle& vehicle = device->vehicle();
     const sim::Body& body = config.body.empty() ? vehicle.base() : vehicle.body(config.body);
@@ -247,6 +247,7 @@ std::unique_ptr<CameraRig> make_camera_rig(const std::string& text, const sim::W
   const bool named = colon != std::string::npos;
   if (text == "all") return std::make_unique<FramingRig>(world, like, std::nullopt, "");
   if (kind == "top") {
+    // The name is checked now, not after minutes of rendering.
     if (named) vehicle_of(world, text, name);
     return std::make_unique<FramingRig>(world, like, sim::Vector3d::UnitZ(), name);
   }

@@ -41,6 +41,7 @@ std::vector<std::string> arguments_of(const FilmFormat& format, const std::vecto
                                      "pipe:0",
                                      "-an"};
   arguments.insert(arguments.end(), codec.begin(), codec.end());
+  // Without the prefix ffmpeg takes a path with a colon for a protocol.
   arguments.push_back("file:" + part);
   return arguments;
 }
@@ -113,6 +114,7 @@ void EncoderProgram::add(const sim::Image8& frame) {
     const ssize_t written = write(input_.number(), at, left);
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) {
+      // The encoder has ended: its own message says why.
       input_ = bridges::FileDescriptor();
       fail(wait());
     }

@@ -99,6 +99,7 @@ class Film {
     }
     progress.clear();
     outcome_.interrupted = experiment::caught_signal() != 0;
+    // A film that is not finished leaves an earlier file of its name alone.
     if (outcome_.interrupted) return outcome_;
     writer.finish();
     outcome_.wall_s = seconds_since(start);
@@ -177,6 +178,7 @@ class Film {
     const int columns = options_.format.width / static_cast<int>(rigs_.size());
     frame_.width = options_.format.width, frame_.height = options_.format.height, frame_.channels = 3;
     frame_.data.assign(frame_.size(), 0);
+    // Views side by side, each of half the width.
     for (std::size_t i = 0; i < rigs_.size(); ++i) {
       SceneView view = rigs_[i]->view(film_step_s);
       overlay_.prepare(view);

@@ -259,6 +259,7 @@ ClipOutcome make_clips(const FilmOptions& film, const ClipOptions& options) {
   std::error_code error;
   fs::create_directories(options.directory, error);
   if (error) throw FilmError(options.directory + ": cannot be created: " + error.message());
+  // A wrong format is reported before any frame is rendered.
   check_film_file(clips.front().file, film.format);
   std::make_unique<Clips>(film, std::move(clips))->run(outcome);
   outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

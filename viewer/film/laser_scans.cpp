@@ -24,7 +24,7 @@ sim::Pose sensor_pose(const sim::MountedDevice& device) {
   return body.X_WB() * config.X_BS();
 }
 
-/// Returns the rays of a plane scan with a return; without one the range is the largest, or the least.
+/// Returns the rays of a plane scan with a return; without one the range is the largest or the smallest.
 std::vector<LaserScans::Ray> rays_of(const devices::Lidar& lidar, const sim::Pose& X_WS) {
   const sim::FieldOfView view = lidar.field_of_view().value();
   std::vector<LaserScans::Ray> rays;
@@ -58,6 +58,7 @@ std::vector<LaserScans::Ray> rays_of(const devices::Lidar3d& lidar, const PoseAt
 
 sim::Pose LaserScans::pose_at(const Poses& X_WS, sim::Time at) {
   const auto after = std::find_if(X_WS.begin(), X_WS.end(), [at](const auto& each) { return each.first >= at; });
+  // Before the first and after the last known pose the nearest one is the best guess.
   if (after == X_WS.begin()) return after->second;
   const auto before = std::prev(after);
   if (after == X_WS.end()) return before->second;

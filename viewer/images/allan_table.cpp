@@ -123,6 +123,7 @@ AllanTable allan_table(const std::string& log, const std::string& channel, const
     if (event->channel != channel) continue;
     const auto* type = types.find(static_cast<std::uint64_t>(shoal::fingerprint(event->payload)));
     if (type == nullptr) throw std::runtime_error(channel + ": unknown type; give its .lcm file with --types");
+    // The fields of two types could not be joined into one series.
     if (schema != nullptr && schema != type) throw std::runtime_error(channel + ": messages of several types");
     schema = type;
     add(record, *schema, *event);

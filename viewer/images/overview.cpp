@@ -42,6 +42,7 @@ std::vector<Subject> subjects_of(const sim::World& world, bool everything) {
       subjects.push_back(subject_of(world.physics(), name, object.group()));
       subjects.back().is_vehicle = false;
     }
+  // What has no extent, such as a vehicle without parts, does not fit into any view.
   std::erase_if(subjects, [](const Subject& each) { return each.box.isEmpty(); });
   return subjects;
 }

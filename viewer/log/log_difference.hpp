@@ -17,7 +17,7 @@ struct LogDifference {
 };
 
 /// Returns the first difference at equal times: of the hashes of the state where both logs have them, else of the poses
-/// of bodies with equal names.  None: equal as far as both reach.  Throws BusError.
+/// of bodies with equal names.  None: equal over the common time span.  Throws BusError.
 std::optional<LogDifference> first_difference(const std::string& path_a, const LogIndex& a, const std::string& path_b,
                                               const LogIndex& b);
 

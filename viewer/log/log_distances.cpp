@@ -62,6 +62,8 @@ void LogDistances::add_time(std::int64_t time_us) {
   const LogPoses::Poses* const a = a_.at(time_us);
   if (a == nullptr || (!t_us_.empty() && a->time_us == t_us_.back())) return;
   const LogPoses::Poses* const b = b_.at(a->time_us);
+  // Logs with other rates have no pose at exactly this time; beyond the tolerance the motion itself would be the
+  // distance.
   const bool comparable = b != nullptr && std::abs(b->time_us - a->time_us) <= same_time_us;
   t_us_.push_back(a->time_us);
   for (Vehicle& vehicle : vehicles_) {
@@ -87,6 +89,7 @@ std::string LogDistances::text(const std::optional<LogDifference>& difference) c
   Json vehicles = Json::array();
   for (const Vehicle& vehicle : vehicles_) {
     Json distances = Json::array();
+    // Micrometers: more digits would only make the message longer.
     constexpr double per_m = 1e6;
     for (const double d : vehicle.distance_m)
       distances.push_back(std::isfinite(d) ? Json(std::round(d * per_m) / per_m) : Json(nullptr));

@@ -77,7 +77,7 @@ void LogIndex::mark_traffic(const Mark& mark, TrafficCounts& counts) {
 
 void LogIndex::add_hash(const Hash& hash) {
   while (!hashes_.empty() && hashes_.back().time_us > hash.time_us) hashes_.pop_back();
-  // At its end a run writes another one, after the last requests.
+  // A run writes another sim.info at its end, after the last requests.
   if (hashes_.empty() || hashes_.back().time_us < hash.time_us) hashes_.push_back(hash);
 }
 
@@ -144,7 +144,7 @@ void LogIndex::check(const std::string& path) const {
       ", so there is nothing to show: it was recorded by an earlier version of Shoal, with 'view:' "
       "switched off, or by a logger that was started after the run" +
       (has_info_ ? "; `shoal view " + path +
-                       " --resimulate` runs its world again, and shows it, if the log has the run from its start"
+                       " --resimulate` re-simulates and shows its world if the log has the run from its start"
                  : ""));
 }
 

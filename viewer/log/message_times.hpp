@@ -13,7 +13,7 @@ namespace viewer {
 /// payload that is too short.
 std::optional<std::int64_t> stamp_of(std::span<const std::byte> payload);
 
-/// Times of messages by the simulated clock, from the stamps that a log or a bus gives them, by any clock, and from the
+/// Simulated times of messages, computed from the stamps of a log or a bus, which may be of any clock, and from the
 /// messages of the simulator, which know the simulated time.  us since 1970.
 class MessageTimes {
  public:

@@ -38,6 +38,7 @@ void SceneNames::arrange(std::uint32_t revision, std::span<const std::byte> bodi
 void arrange(std::span<const std::byte> bodies, const std::vector<std::string>& names,
              const std::vector<std::string>& order, StateFrame& frame) {
   const std::size_t count = std::min(bodies.size() / StateFrame::body_bytes, names.size());
+  // The usual case, since a scene rarely changes.
   if (names == order && count == order.size()) return frame.add(bodies.first(count * StateFrame::body_bytes));
   std::unordered_map<std::string_view, std::size_t> index;
   for (std::size_t i = 0; i < count; ++i) index.emplace(names[i], i);

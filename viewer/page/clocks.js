@@ -25,7 +25,7 @@ const finite = (value) => (Number.isFinite(value) ? value : null);
 /** Figures of the newest status of a clock; numbers that are not known are null. */
 export function clockFigures({fields}, sound_speed_mps) {
   const error_s = finite(fields.error_s), std_s = finite(fields.estimated_std_s);
-  // Without the truth channel the error is as large as the clock itself believes.
+  // Without the truth channel the error is the one that the clock itself estimates.
   const used_s = error_s ?? std_s;
   return {
     offset_ms: error_s === null ? null : 1000 * error_s,

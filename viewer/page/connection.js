@@ -84,7 +84,7 @@ export class Connection {
   }
 
   /**
-   * Acknowledges the states received since the last call: at once, also where frames take longer than states.  A hidden
+   * Acknowledges the states received since the last call: at once, even where frames take longer than states.  A hidden
    * page draws no frame and asks for no more.
    */
   acknowledge() {

@@ -223,7 +223,7 @@ export function drawNames(app, vehicles, estimates) {
     labels.text(selected.at, selected.name + error, {color: selected.color, dy: -22, bold: true});
   }
   if (!app.options.get('labels')) return;
-  // Of many vehicles only those that are near have their names.
+  // With many vehicles only the near ones are labeled.
   const meter_px = app.camera.projectionMatrix.elements[5] * app.sides.regions[0].height / 2;
   for (const vehicle of vehicles) {
     const seen_px = vehicle.radius_m * meter_px / vehicle.at.distanceTo(app.camera.position);

@@ -13,7 +13,7 @@ void main() {
 const FRAGMENT = /* glsl */ `
 varying vec3 vId, vEye;
 void main() {
-  if (length(vEye) > 10000.0) discard;  // as far as the renderer sees
+  if (length(vEye) > 10000.0) discard;  // the far plane of the renderer
   gl_FragColor = vec4(vId, 1.0);
 }`;
 
@@ -68,7 +68,7 @@ export async function bodyMask(app, {eye, look, fov_deg, width, height}) {
   app.renderer.readRenderTargetPixels(target, 0, 0, width, height, bytes);
   app.renderer.setRenderTarget(null);
   app.renderer.shadowMap.autoUpdate = shadows;
-  // As it was.
+  // Restore the previous state.
   meshes.forEach((mesh, i) => {
     [mesh.material, mesh.instanceColor] = kept[i];
   });

@@ -15,7 +15,7 @@ export function budgetOf(from, to, data_rate_bps) {
   return {
     share: (to.sending_us - from.sending_us) / passed_us,
     bytes_per_min,
-    // Of what the modem could carry if it sent data all the time.
+    // Share of what the modem could carry if it sent data all the time.
     of_rate: data_rate_bps > 0 ? bytes_per_min * 8 / 60 / data_rate_bps : null,
   };
 }

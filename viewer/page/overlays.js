@@ -48,7 +48,7 @@ export function fieldOfViewLines(view) {
     const edge = (share) => [x, radius_m * Math.cos(2 * Math.PI * share), radius_m * Math.sin(2 * Math.PI * share)];
     const points = along(edge);
     for (let i = 0; i < 8; ++i) points.push(0, 0, 0, ...edge(i / 8));
-    // From x to the axis of the cone.
+    // Rotation from x to the axis of the cone.
     const turn = new Quaternion().setFromUnitVectors(new Vector3(1, 0, 0), new Vector3(...view.axis ?? [1, 0, 0]));
     const point = new Vector3();
     for (let i = 0; i < points.length; i += 3) point.fromArray(points, i).applyQuaternion(turn).toArray(points, i);

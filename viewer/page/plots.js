@@ -117,7 +117,7 @@ export class Plots {
   traces() { return this.plots.flatMap((plot) => plot.traces); }
 
   /**
-   * Asks for the channels of a run that are plotted, also while the panel is closed, and for one to list its fields.
+   * Asks for the channels of a run that are plotted, even while the panel is closed, and for one to list its fields.
    */
   subscribe() {
     const names = new Set(this.isLog ? [] : this.traces().map((trace) => trace.channel));

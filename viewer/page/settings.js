@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the user chose: theme, what is drawn, keys; and the view in the fragment of the address.
+// Choices of the user: theme, layers, keys; and the view, in the fragment of the address.
 
 const $ = (id) => document.getElementById(id);
 const THEME_KEY = 'shoal.theme';

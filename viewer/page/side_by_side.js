@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is shown and another branch, or a second log, side by side: one canvas, two parts, the same camera and time.
+// Side-by-side view of the present and another branch, or of two logs: one canvas, two parts, same camera and time.
 // Where the page is higher than wide they stand one above the other.
 import {drawAnnotations, drawNames} from './labels.js';
 import {formatTime} from './panels.js';
@@ -103,7 +103,7 @@ export class SideBySide {
         Math.max(FREE_MIN, Math.min(1, 2 * Math.min(middle - from, from + size - middle) / whole));
     if (!this.on)
       return {wide: share(x, width, innerWidth / 2, innerWidth), high: share(y, height, innerHeight / 2, innerHeight)};
-    // The middle of each view is that of its half.
+    // Each view is centered in its half.
     const stacked = innerWidth <= NARROW_PX;
     const part = (size, whole) => Math.max(FREE_MIN, Math.min(1, size / whole));
     return {

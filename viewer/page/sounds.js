@@ -121,7 +121,7 @@ export class Sounds {
       const at = new Vector3(...item.position_m.map((x, i) => x - this.origin_m[i]));
       this.marks.push(
           {...item, at, look: OUTCOMES[item.outcome] ?? { color: '#999999', sign: '?', text: item.outcome }});
-      // The sound is drawn as far as it was received.
+      // The sound is drawn up to the farthest receiver.
       const sound = this.sounds.findLast((one) => one.id === item.id);
       if (sound) sound.reach_m = Math.max(sound.reach_m, 1.2 * sound.at.distanceTo(at));
     }

@@ -64,6 +64,7 @@ class FieldDecoder {
     if (member.length_slot >= 0)
       lengths[static_cast<std::size_t>(member.length_slot)] = shoal::read_integer(member.type, at_);
     const bool is_number = member.type != WireType::compound && member.type != WireType::string;
+    // Long arrays go into the binary part: as JSON they would take several times the bytes and time.
     if (is_number && !sizes.empty() && count > longest_in_header) return put_array(member.type, sizes, count);
     return decode_elements(member, sizes, 0);
   }
@@ -130,7 +131,7 @@ class FieldDecoder {
 
 std::string message_frame(const shoal::MessageTypes& types, std::string_view channel,
                           std::span<const std::byte> payload, std::int64_t time_us) {
-  // Fields, as far as they can be read
+  // All fields that can be read
   const shoal::MessageSchema* schema = payload.size() < sizeof(std::uint64_t)
                                            ? nullptr
                                            : types.find(static_cast<std::uint64_t>(shoal::fingerprint(payload)));

@@ -29,7 +29,7 @@ class TrafficCounts {
     std::int64_t received = 0;
     std::map<std::string, std::int64_t, std::less<>> lost;  ///< by outcome
   };
-  /// What a device has transmitted by sound.
+  /// Acoustic transmissions of a device.
   struct Sender {
     std::int64_t count = 0, bytes = 0;
     std::int64_t sending_us = 0;  ///< sum of the durations

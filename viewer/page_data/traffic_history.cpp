@@ -54,11 +54,13 @@ void TrafficHistory::mark(std::int64_t time_us, std::uint64_t offset, const Traf
     set(links_[{names.first, names.second, ""}], marks, pair.received);
     for (const auto& [outcome, number] : pair.lost) set(links_[{names.first, names.second, outcome}], marks, number);
   }
+  // Pages draw about as many points as they have pixels, so a long log is kept more coarsely instead of growing
+  // without limit.
   if (size_ > limit_) thin();
 }
 
 void TrafficHistory::thin() {
-  // Of the older half those stay that are twice as far apart as its marks are on the average: at most half of them.
+  // In the older half only marks at least twice the average distance apart stay: at most half of them.
   const std::size_t older = marks_.size() / 2;
   const std::int64_t span_us = marks_[older].time_us - marks_[0].time_us;
   const std::int64_t apart_us = 2 * span_us / static_cast<std::int64_t>(std::max<std::size_t>(1, older));
@@ -69,7 +71,7 @@ void TrafficHistory::thin() {
     if (i >= older || kept.empty() || marks_[i].time_us - kept.back().time_us >= apart_us) kept.push_back(marks_[i]);
   }
   marks_ = std::move(kept);
-  // Of several values that now begin at the same mark the last one holds.
+  // If several values now begin at the same mark, the last one holds.
   size_ = 0;
   for_each([&](Values& values) {
     Values left;
@@ -102,6 +104,7 @@ std::int64_t TrafficHistory::last_us() const {
 TrafficCounts TrafficHistory::restore(std::size_t marks) const {
   TrafficCounts counts;
   for (const auto& [name, values] : channels_)
+    // What had not appeared at this mark must not be listed with zeros.
     if (const std::int64_t count = get(values.count, marks); count > 0)
       counts.channels_[name] = {values.fingerprint, count, get(values.bytes, marks)};
   for (const auto& [names, values] : sent_)

@@ -12,11 +12,11 @@
 
 namespace viewer {
 
-/// What the live page shows of a log, as messages of its protocol (docs/develop/view_protocol.md) with their times: the
-/// content of a page that needs no server.
+/// Recording of what the live page shows of a log, as messages of its protocol (docs/develop/view_protocol.md) with
+/// their times: the content of a page that needs no server.
 class Recording final : public bridges::PageOutput {
  public:
-  /// What an entry is; the numbers are those of the file.
+  /// Kind of an entry; the numbers are those of the file.
   enum class Kind : std::uint32_t { text = 1, state = 2, asset = 3, estimates = 4 };
   struct Entry {
     Kind kind;

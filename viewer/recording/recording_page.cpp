@@ -77,6 +77,7 @@ std::string recording_html(std::span<const bridges::EmbeddedFile> page, std::str
     if (at == std::string::npos) throw std::runtime_error("index.html of the page has no '" + std::string(what) + "'");
     html.replace(at, what.size(), by);
   };
+  // The loader below replaces the script: modules cannot be imported from a file opened without a server.
   replace(script_of_page, "");
   replace("<meta charset=\"utf-8\">\n", "<meta charset=\"utf-8\">\n" + std::string(policy));
   replace("</body>", data_element("modules", bridges::gzip(modules_of(page))) + data_element("recording", packed) +

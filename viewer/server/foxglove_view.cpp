@@ -21,7 +21,7 @@ std::shared_ptr<bridges::foxglove::Protocol> make_protocol(bridges::WebServer& s
       [&server](std::function<void()> work) { server.run_in_thread(std::move(work)); });
   if (server.needs_token_to_read())
     protocol->require_token([&server](std::string_view token) { return server.is_token(token); });
-  // Of a client that offers both, the newer name.
+  // If a client offers both, the newer name.
   for (const char* name : {"foxglove.sdk.v1", "foxglove.websocket.v1"}) server.add_protocol(name, protocol);
   return protocol;
 }
@@ -49,11 +49,13 @@ bool FoxgloveView::take_subscribed() {
 }
 
 void FoxgloveView::serve(const std::function<State()>& state, const std::function<Answer(const Request&)>& execute) {
+  // A client that floods the run with requests must not stop the simulation.
   constexpr int max_at_once = 50;
   for (int i = 0; i < max_at_once; ++i) {
     const auto request = protocol_->take_request();
     if (!request) break;
     auto [ok, text] = execute(*request);
+    // The state first, so that the client sees its effect before the reply.
     protocol_->set_state(state());
     protocol_->reply(*request, ok, std::move(text));
   }

@@ -54,6 +54,7 @@ class Decimator {
       for (const Sample& sample : all_) put(sample);
       return series;
     }
+    // The smallest and the largest value of each interval, in order of time: peaks stay visible.
     for (const auto& [smallest, largest] : extremes_) {
       if (!smallest) continue;
       const bool falls = largest->t_us < smallest->t_us;
@@ -177,6 +178,7 @@ void LogSeries::run() {
     if (ends_) return;
     const Job job = std::move(jobs_.front());
     jobs_.pop_front();
+    // Reading a log takes long; requests can be added meanwhile.
     lock.unlock();
     answer(job);
     lock.lock();

@@ -131,7 +131,7 @@ void LogView::seek(std::int64_t time_us) {
   time_us = std::clamp(time_us, index_.start_us(), index_.end_us());
   now_us_ = static_cast<double>(time_us);
   foxglove_.jump(index_.epoch_us() + std::max(index_.start_us(), time_us - before_us));
-  // What holds at this time, then what happened shortly before it.
+  // The state at this time, then the events shortly before it.
   send_event_at(index_.scene_at(time_us).offset);
   if (const auto scores = index_.scores_at(time_us)) send_event_at(scores->offset);
   messages_.rewind_paths(std::numeric_limits<std::int64_t>::min());
@@ -211,7 +211,7 @@ void LogView::serve_foxglove() {
   foxglove_.serve([this] { return foxglove_state(); },
                   [this](const FoxgloveView::Request& request) -> FoxgloveView::Answer {
                     if (request.kind != FoxgloveView::Request::Kind::playback)
-                      return {false, "this is a log, which cannot be steered"};
+                      return {false, "this is a log, which cannot be controlled"};
                     play_foxglove(request.playback);
                     return {true, ""};
                   });
@@ -242,6 +242,7 @@ void LogView::send_status() {
   status_is_old_ = false;
   since_status_s_ = 0;
   const bool at_end = now_us_ >= static_cast<double>(index_.end_us());
+  // A log that is at its end stands still, whatever was chosen.
   server_.retain("status", json_text({{"op", "status"},
                                       {"time_us", static_cast<std::int64_t>(now_us_)},
                                       {"step", nullptr},
@@ -259,6 +260,8 @@ void LogView::handle(const bridges::ViewRequest& request) {
     if (request.op == "subscribe") fill_feed();
     return;
   }
+  // Requests come from a browser: what cannot be read is ignored, or answered with an error, but never ends the
+  // server.
   const Json message = Json::parse(request.text, nullptr, false);
   if (!message.is_object()) return;
   try {
@@ -271,13 +274,14 @@ void LogView::handle(const bridges::ViewRequest& request) {
       speed_ = std::clamp(message.value("speed", speed_), 0.01, 1000.0);
       paused_ = message.value("paused", paused_);
       loop_ = message.value("loop", loop_);
+      // Play at the end starts again, as media players do.
       if (!paused_ && now_us_ >= static_cast<double>(index_.end_us())) seek(index_.start_us());
       status_is_old_ = true;
     } else if (request.op == "control") {
       server_.reply(request.client, json_text({{"op", "reply"},
                                                {"id", message.value("id", Json())},
                                                {"ok", false},
-                                               {"text", "this is a log, which cannot be steered"}}));
+                                               {"text", "this is a log, which cannot be controlled"}}));
     }
   } catch (const Json::exception&) {
     server_.reply(request.client,

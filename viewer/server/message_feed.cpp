@@ -12,7 +12,7 @@ void MessageFeed::subscribe(int client, const std::vector<Subscription>& subscri
   std::vector<Reader> readers;
   const std::vector<Reader>& before = readers_[client];
   for (const Subscription& subscription : subscriptions) {
-    // What the page already has is not sent again.
+    // Messages that the page already has are not sent again.
     const auto same = std::find_if(before.begin(), before.end(), [&](const Reader& reader) {
       return reader.subscription.channel == subscription.channel;
     });
@@ -36,6 +36,7 @@ void MessageFeed::drop_unread_channels() {
     bytes_ -= channel.second.payload.size();
     return true;
   });
+  // Without subscribers the past is not needed either.
   if (channels_.empty()) {
     past_.clear();
     past_bytes_ = 0;

@@ -37,6 +37,7 @@ PageDrive::Request PageDrive::read(std::string_view text) {
   if (!message.is_object()) throw experiment::DriveError("drive must be a JSON object");
   Request request{text_of(message, "vehicle"), text_of(message, "kind"), {}};
   const auto values = message.find("values");
+  // Without values: only find out how the vehicle can be driven.
   if (values == message.end() || values->is_null()) return request;
   if (!values->is_object() || values->size() > max_values)
     throw experiment::DriveError("'values' of drive must be an object with at most 100 numbers");

@@ -124,6 +124,7 @@ std::string PageTraffic::vehicle_of(const std::string& channel) const {
 void PageTraffic::send_counts(std::int64_t time_us) {
   std::vector<const std::pair<const std::string, TrafficCounts::Channel>*> channels;
   for (const auto& channel : counts_.channels()) channels.push_back(&channel);
+  // Sorted, so that rows of the table stay in their places.
   std::sort(channels.begin(), channels.end(), [](const auto* a, const auto* b) { return a->first < b->first; });
   Json items = Json::array();
   for (const auto* each : channels) {

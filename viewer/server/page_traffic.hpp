@@ -15,7 +15,7 @@
 
 namespace viewer {
 
-/// What pages see of the messages themselves: the channels with their counts, who received from whom, and the messages
+/// Message traffic as shown on pages: the channels with their counts, who received from whom, and the messages
 /// of the channels that a page has subscribed to.
 class PageTraffic {
  public:

@@ -84,6 +84,7 @@ void PastView::compare() {
 std::string PastView::branches_text() const {
   Json items = Json::array();
   const std::vector<PoseHistory::Branch> branches = history_.branches();
+  // The newest ones: a long session can have thousands.
   for (std::size_t i = branches.size() - std::min(branches.size(), max_listed); i < branches.size(); ++i) {
     const PoseHistory::Branch& branch = branches[i];
     const auto known = comparisons_.find(branch.number);

@@ -29,9 +29,9 @@ class PastView {
 
   /// Takes a scene, which has the names of the bodies of its revision.
   void set_scene(const std::string& scene);
-  /// Keeps the present poses, when they are due.
+  /// Stores the present poses at intervals.
   void remember(const sim::World& world, const bridges::ViewPublisher& publisher);
-  /// As PoseHistory::start_branch().
+  /// See PoseHistory::start_branch().
   void start_branch(std::int32_t number, std::int64_t start_us, std::int64_t left_us, bool continues);
   /// Says what the programs of the present branch do, for the list of branches; empty: nothing.
   void set_programs(const std::string& text);

@@ -17,8 +17,10 @@ void PoseHistory::start_branch(std::int32_t number, std::int64_t start_us, std::
   Track track{{number, std::nullopt, start_us, start_us}, {}};
   if (before != tracks_.end()) {
     before->second.branch.end_us = left_us;
+    // Only a branch that continues the present one has its past.
     if (continues) track.branch.parent = present_;
   }
+  // A fresh start is better than growing without limit, or refusing to branch.
   if (tracks_.size() >= max_branches) {
     clear();
     track.branch.parent.reset();
@@ -57,14 +59,14 @@ void PoseHistory::thin() {
   if (numbers.size() < 3) return;
   std::nth_element(numbers.begin(), middle, numbers.end());
   const std::uint64_t newer = *middle;
-  // Of it, keep states twice as far apart, or further, until an eighth of all is removed.
+  // Thin it: keep states twice as far apart, or further, until an eighth of all is removed.
   constexpr std::int64_t max_apart_us = 1'000'000'000'000'000;
   for (std::int64_t apart_us = 2 * interval_us; apart_us < max_apart_us; apart_us *= 2)
     if (keep_apart(newer, apart_us, false) > numbers.size() / 8) {
       keep_apart(newer, apart_us, true);
       return;
     }
-  // Of many short branches, remove every second state.
+  // With many short branches, remove every second state.
   bool removes = false;
   for (auto& [number, track] : tracks_) {
     const auto end = std::remove_if(track.states.begin(), track.states.end(), [&](const Saved& kept) {
@@ -121,7 +123,7 @@ std::optional<PoseHistory::State> PoseHistory::at(std::int32_t branch, std::int6
 
 std::vector<const PoseHistory::Saved*> PoseHistory::all_from(const Track& track, std::int64_t from_us) const {
   std::vector<const Saved*> states;
-  // From the branch back to its ancestors: each has the times until the start of its child.
+  // Walk from the branch back to its ancestors: each covers the time until the start of its child.
   std::int64_t until_us = std::numeric_limits<std::int64_t>::max();
   for (const Track* at = &track; at != nullptr;) {
     for (auto kept = at->states.rbegin(); kept != at->states.rend() && kept->time_us >= from_us; ++kept)

@@ -62,6 +62,7 @@ void RunView::start(const sim::World& world, std::optional<double> duration_s, c
   if (!source.programs.empty()) hello["programs"] = source.programs;
   if (source.may_launch) hello["may_launch"] = true;
   if (source.record == "recorded") past_.set_programs(source.programs);
+  // Retained, so that pages which connect later get it first.
   server_.retain("hello", json_text(hello));
   using bridges::foxglove::Control;
   foxglove_.introduce(world.config().name, version_, foxglove_control_ ? Control::run : Control::none);
@@ -147,6 +148,7 @@ void RunView::send_status(const sim::World& world, const sim::RunControl& contro
 void RunView::handle(const bridges::ViewRequest& request, const Execute& execute) {
   if (request.op == "look") return past_.answer(request);
   const Json message = Json::parse(request.text, nullptr, false);
+  // Unknown requests are ignored: a page of a newer version may send more.
   if (request.op != "control" || !message.is_object()) return;
   Json reply{{"op", "reply"}, {"id", message.value("id", Json())}};
   try {

@@ -80,7 +80,7 @@ class RunView final : public experiment::RunPage {
   Clock::time_point next_frame_{}, next_status_{}, next_traffic_{};
   std::int64_t sent_step_ = -1;
   std::int64_t last_us_ = 0;  // time of the last step
-  // For the rate of simulated time.
+  // Used to measure the rate of simulated time.
   Clock::time_point rate_since_{};
   sim::Time rate_from_{0};
   double rate_ = 0;

@@ -69,12 +69,13 @@ void ViewMessages::take(std::string_view channel, std::span<const std::byte> pay
       take_estimate(channel, payload);
     }
   } catch (const std::exception&) {
+    // A message of any program may be malformed; the view only counts it.
     ++bad_messages_;
   }
 }
 
 bool ViewMessages::take_named(std::string_view channel, std::span<const std::byte> payload) {
-  // What later pages need too.
+  // Pages that connect later need these messages too.
   if (channel == "sim.info") {
     epoch_us_ = shoal::decode<shoal::sim_info_t>(payload, shoal::Finite::required).epoch_utime;
   } else if (channel == "sim.scene") {
@@ -201,7 +202,7 @@ void ViewMessages::take_scores(std::span<const std::byte> payload) {
                                       {"rules", std::move(rules)}}));
 }
 
-/// Also without a page: paths are rare, and a page that comes later needs them.
+/// Kept even if no page is connected: paths are rare, and a page that connects later needs them.
 void ViewMessages::take_path(std::string_view channel, std::span<const std::byte> payload) {
   auto path = read_path(payload);
   if (!path) return;
@@ -237,8 +238,8 @@ void ViewMessages::take_estimate(std::string_view channel, std::span<const std::
   if (server_.clients() == 0) return;
   const auto estimate = read_estimate(channel, payload);
   if (!estimate) return;
-  // The vehicle is the part of the channel before its last dot.  Of several estimates of a vehicle the page shows that
-  // on VEHICLE.estimate, else the first.
+  // The vehicle is the part of the channel before its last dot.  If a vehicle has several estimates, the page shows
+  // that on VEHICLE.estimate, else the first.
   const std::string vehicle(channel.substr(0, channel.rfind('.')));
   constexpr std::size_t max_vehicles = 10'000;
   if (estimates_.size() >= max_vehicles && !estimates_.contains(vehicle)) return;

@@ -18,8 +18,8 @@ namespace {
 ///
 /// D is w^(-1/2) for the position and 1 for the errors of the own instruments (heading, speed, clock), which are in no
 /// data of others.  Inflated with each of many measurements, they would exceed what the instruments allow: a heading
-/// that nothing bounds turns the track.  w in (0, 1] gives the least trace of the position; w = 1 means no update.  A
-/// sender whose fixes by satellite replaced all that it said before is independent, and says so: the range is used
+/// that nothing bounds turns the track.  w in (0, 1] minimizes the trace of the position; w = 1 means no update.  A
+/// sender whose fixes by satellite replaced all that it sent before is independent, and says so: the range is used
 /// without inflation.
 class CovarianceIntersection final : public OwnFilterEstimator<CovarianceIntersection> {
  public:
@@ -42,15 +42,19 @@ class CovarianceIntersection final : public OwnFilterEstimator<CovarianceInterse
     const double a = row.H.dot(filter_.P() * row.H);
     if (!std::isfinite(innovation_m) || !filter_.within_gate(innovation_m, a + b + R)) return;
     independence_.shared();
+    // Fixes of the sender have replaced all that it shared: no common errors are left, and an ordinary update is exact.
     if (is_independent) {
       filter_.update(row.H, innovation_m, b + R);
       return;
     }
+    // Covariance intersection (Julier and Uhlmann 1997) of own covariance over w and the sender's over 1 - w. The
+    // weight minimizes the trace of the own position after the update.
     const double trace = filter_.covariance(own).trace();
     const Minimum best = minimum_between(0.01, 0.999, [&](double w) {
       const Eigen::VectorXd DH = inflated(row.H, w), PDH = filter_.P() * DH;
       return trace / w - PDH.head<2>().squaredNorm() / (w * (DH.dot(PDH) + b / (1 - w) + R));
     });
+    // No weight gains anything: the estimate stays as it is.
     if (!(best.value < trace)) return;
     inflate(best.at);
     filter_.update(row.H, innovation_m, b / (1 - best.at) + R);
@@ -62,6 +66,7 @@ class CovarianceIntersection final : public OwnFilterEstimator<CovarianceInterse
     const Matrix2 B = row.J * other->P * row.J.transpose();
     if (!filter_.within_gate(row, B)) return;
     const double trace = filter_.covariance(own).trace();
+    // As for ranges, with a measurement of two components.
     const Minimum best = minimum_between(0.01, 0.999, [&](double w) {
       const Eigen::MatrixXd DH = inflated(row.H.transpose(), w), PDH = filter_.P() * DH;
       const Matrix2 S = DH.transpose() * PDH + B / (1 - w) + row.R;

@@ -18,7 +18,8 @@ using autonomy::MarineEkf;
 /// bias with the same initial growth, and those of fixes are not modeled.
 class CoopAuvFilter final : public EstimatorOf<CoopAuvFilter> {
  public:
-  static constexpr const char* meaning = "filter of the program coop_auv: naive, but it doubts beacons and clocks";
+  static constexpr const char* meaning =
+      "filter of the program coop_auv: naive, with tests for faulty beacons and clocks";
 
   void start(const Setup& setup) override {
     need_bytes(setup, "coop_auv", position_bytes);

@@ -19,7 +19,8 @@ using autonomy::Ekf;
 /// counts when the vehicle moves on, and a vehicle that goes backwards seems to have turned.
 class CoopRoverFilter final : public EstimatorOf<CoopRoverFilter> {
  public:
-  static constexpr const char* meaning = "filter of the program coop_rover, on land: naive, who has GPS sends";
+  static constexpr const char* meaning =
+      "filter of the program coop_rover, on land: naive; only vehicles with GPS send";
   static constexpr bool at_sea = false;
 
   void start(const Setup& setup) override {
@@ -34,6 +35,7 @@ class CoopRoverFilter final : public EstimatorOf<CoopRoverFilter> {
     time_ = time;
     v_W_ = v_W;
     if (!filter_) {
+      // At rest there is no direction of motion yet, and the filter needs a heading.
       if (v_W.norm() < min_speed_mps) {
         p_W_ += moved_W;
         return;

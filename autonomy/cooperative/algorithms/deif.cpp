@@ -97,10 +97,12 @@ class DecentralizedInformationFilter final : public EstimatorOf<DecentralizedInf
     }
     said_.push_front(link_of(both, mean_before_, covariance_before_));
     number_ = (number_ + 1) % cycle;
+    // The state of the last frame is marginalized; a copy of the present one begins the next link of the chain.
     alone_.remove(before_);
     before_ = alone_.copy(own);
     mean_before_ = alone_.position(own);
     covariance_before_ = alone_.covariance(own);
+    // Each frame repeats earlier links, as many as fit, so that a receiver can follow the chain across lost frames.
     const std::size_t fitting = (max_bytes - head_bytes) / link_bytes;
     if (said_.size() > fitting) said_.resize(fitting);
     Bytes payload;

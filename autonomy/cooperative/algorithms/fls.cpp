@@ -65,7 +65,7 @@ class Trajectory {
   JointFilter end(const VectorXd& noise) const;
 
  private:
-  /// What a walk along the trajectory may return; the first rows of the Jacobian are those of the noise.
+  /// Optional results of a walk along the trajectory; the first rows of the Jacobian are those of the noise.
   struct Results {
     double* residuals = nullptr;
     MatrixXd* jacobian = nullptr;
@@ -89,12 +89,14 @@ Trajectory::Trajectory(const JointFilter& first, const std::deque<Node>& nodes, 
     const Node& node = nodes[k];
     if (!at.empty()) filter.set_x(at[k]);
     double variance_m2 = node.std_m * node.std_m;
+    // Errors of the sender count as noise of the range: it is not estimated here.
     if (node.sender) {
       const Vector2 u = filter.range_row(0, *node.sender, node.dz_m).u;
       variance_m2 += u.dot(node.sender->P * u);
     }
     range_std_m_.push_back(std::sqrt(variance_m2));
     measured_ += (node.sender ? 1 : 0) + (node.fix_W ? 2 : 0);
+    // From a certain state, so that P is the noise of this stretch alone.
     filter.set_P(MatrixXd::Zero(filter.size(), filter.size()));
     for (const Node::Motion& motion : node.motions) filter.move(0, motion.time, motion.v_W, motion.q);
     roots_.push_back(root_of(filter.P()));
@@ -222,6 +224,7 @@ class FixedLagSmoother final : public OwnFilterEstimator<FixedLagSmoother> {
     const double dz_m = received.own_z_m - received.sender_z_m;
     const double clock_m2 = sender_clock_variance_m2(setup_, received.sender, received.toa - setup_.time);
     const double std_m = std::sqrt(received.std_m * received.std_m + clock_m2);
+    // The gate is that of a filter at the newest state; a wrong range would spoil the whole window.
     JointFilter predicted = filter_;
     if (predicted.range(own, *sender, dz_m, received.range_m, std_m) != JointFilter::Outcome::used) return;
     Node& node = begin_node(received.toa);

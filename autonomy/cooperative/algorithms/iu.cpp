@@ -57,6 +57,7 @@ class InterleavedUpdate final : public EstimatorOf<InterleavedUpdate> {
       const auto sender = read_position(reader);
       if (!sender) break;
       for (const auto& [set, filter] : bank_) {
+        // Both contain information of the same vehicle, which must not be used twice.
         if ((set & senders_set) != 0) continue;
         JointFilter result = filter;
         if (result.range(own, *sender, received.own_z_m - received.sender_z_m, received.range_m, received.std_m,
@@ -67,13 +68,14 @@ class InterleavedUpdate final : public EstimatorOf<InterleavedUpdate> {
       }
     }
     for (const auto& [set, result] : results) keep_better(bank_, set, result);
+    // There are 2^n sets of vehicles, so the bank is limited.
     while (bank_.size() > max_filters) bank_.erase(worst());
   }
   Bytes make_payload(Time time, std::size_t max_bytes) override {
     std::vector<std::pair<double, Set>> order;
     for (const auto& [set, filter] : bank_) order.emplace_back(trace(filter), set);
     std::sort(order.begin(), order.end());
-    // What it knows alone has nothing of the others.
+    // The filter without ranges contains no information of other vehicles.
     const bool is_independent = independence_.is_independent();
     if (is_independent) order = {{0, own_set()}};
     independence_.shared();

@@ -10,7 +10,7 @@ namespace {
 /// errors become errors of the position.
 class NaiveClockless final : public OwnFilterEstimator<NaiveClockless> {
  public:
-  static constexpr const char* meaning = "the same as naive, but it assumes that all clocks are synchronized";
+  static constexpr const char* meaning = "like naive, but it assumes that all clocks are synchronized";
 
   void start(const Setup& setup) override {
     need_bytes(setup, "naive_clockless", position_bytes);

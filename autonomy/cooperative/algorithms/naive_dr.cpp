@@ -6,11 +6,11 @@ namespace navigation {
 
 namespace {
 
-/// As `naive`, but a vehicle says only what it knows by itself, from a second filter without ranges.  No information
+/// Like `naive`, but a vehicle sends only the estimate of a second filter without ranges.  No information
 /// returns through others, but the error of a sender is the same in each of its ranges.
 class NaiveOfDeadReckoning final : public OwnFilterEstimator<NaiveOfDeadReckoning> {
  public:
-  static constexpr const char* meaning = "as naive, but each vehicle sends only its dead reckoning";
+  static constexpr const char* meaning = "like naive, but each vehicle sends only its dead reckoning";
 
   void start(const Setup& setup) override {
     need_bytes(setup, "naive_dr", position_bytes);

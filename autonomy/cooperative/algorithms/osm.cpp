@@ -75,6 +75,7 @@ class OriginStateMethod final : public EstimatorOf<OriginStateMethod> {
   Bytes make_payload(Time, std::size_t max_bytes) override {
     Bytes payload;
     PayloadWriter writer(payload);
+    // Once fixes have replaced all that it shared, its position alone says everything, in fewer bytes.
     const bool has_fixes = has_said_ && independence_.is_independent();
     independence_.shared();
     has_said_ = true;
@@ -86,6 +87,7 @@ class OriginStateMethod final : public EstimatorOf<OriginStateMethod> {
     writer.whole(pair_kind, 1);
     const int places[] = {alone_.offset(origin_), alone_.offset(origin_) + 1, alone_.offset(own),
                           alone_.offset(own) + 1};
+    // The receiver takes the difference of two pairs, which costs digits: double precision if the frame has room.
     const int size = max_bytes > 8 * numbers ? 8 : 4;
     for (const int place : places) writer.real(alone_.x()[place], size);
     for (int i = 0; i < 4; ++i)

@@ -61,6 +61,7 @@ class ParticleStart final : public OwnFilterEstimator<ParticleStart> {
       return;
     }
     const double own_clock_m = setup_.sound_speed_mps * setup_.errors().clock_s;
+    // Particles have no state for the clock, so its error counts as noise of the range.
     const double R = received.std_m * received.std_m + clock_m2 + own_clock_m * own_clock_m;
     if (!has_received_) place_on_ring(*sender, received.range_m, dz_m, std::sqrt(R));
     has_received_ = true;
@@ -88,6 +89,7 @@ class ParticleStart final : public OwnFilterEstimator<ParticleStart> {
       const double error_m = range_m - distance_m;
       exponents[i] = -0.5 * error_m * error_m / (R + u.dot(sender.P * u));
     }
+    // Shifted by the largest exponent: weights of particles far from the range would all underflow to 0.
     const double largest = *std::max_element(exponents.begin(), exponents.end());
     double sum = 0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -99,8 +101,10 @@ class ParticleStart final : public OwnFilterEstimator<ParticleStart> {
   void resample() {
     double squares = 0;
     for (const double weight : weights_) squares += weight * weight;
+    // Effective number of particles: resampling without need loses variety.
     if (1 / squares > 0.5 * count) return;
     std::vector<Vector2> chosen;
+    // Systematic resampling: one random number for all.
     const double start = random_.uniform();
     double sum = weights_[0];
     std::size_t from = 0;

@@ -17,8 +17,8 @@ namespace {
 ///     P1 = Pd / w + Pi,   P2 = Bd / (1 - w) + Bi,   K = P1 H' (H P1 H' + u' P2 u + R)^-1,   A = I - K H
 ///     P+ = A P1 A' + K (u' P2 u + R) K',   Pi+ = A Pi A' + K R K',   Pd+ = P+ - Pi+
 ///
-/// and w of the least trace.  What a vehicle measures by itself is independent until it says its position; from then on
-/// others may have it, and it belongs to Pd.  What came from a sender does, too: others received the same.
+/// and w minimizes the trace.  What a vehicle measures by itself is independent until it says its position; from then
+/// on others may have it, and it belongs to Pd.  What came from a sender does, too: others received the same.
 class SplitCovarianceIntersection final : public EstimatorOf<SplitCovarianceIntersection> {
  public:
   static constexpr const char* meaning = "split covariance intersection: own errors are known to be independent";
@@ -50,11 +50,13 @@ class SplitCovarianceIntersection final : public EstimatorOf<SplitCovarianceInte
     const double R = received.std_m * received.std_m + row.bend_variance_m2 +
                      sender_clock_variance_m2(setup_, received.sender, received.toa - setup_.time);
     const double b = row.u.dot(sender->P * row.u);
+    // Both are rounded for the payload, so the part may exceed the whole by a last digit.
     const double bi = std::min(b, row.u.dot(*sender_independent * row.u));
     const double innovation_m = received.range_m - row.predicted_m;
     const double a = row.H.dot(total_.P() * row.H);
     if (!std::isfinite(innovation_m) || !total_.within_gate(innovation_m, a + b + R)) return;
     const Eigen::MatrixXd Pi = total_.P() - Pd_;
+    // Only the errors that may be correlated are inflated (Julier and Uhlmann 2001, split covariance intersection).
     const auto variance = [&](double w) { return (b - bi) / (1 - w) + bi + R; };
     const Eigen::VectorXd PdH = Pd_ * row.H, PiH = Pi * row.H;
     const double trace_d = Pd_.topLeftCorner<2, 2>().trace(), trace_i = Pi.topLeftCorner<2, 2>().trace();
@@ -67,6 +69,7 @@ class SplitCovarianceIntersection final : public EstimatorOf<SplitCovarianceInte
     const Eigen::VectorXd PH = PdH / w + PiH;
     const Eigen::VectorXd K = PH / (row.H.dot(PH) + variance(w));
     const Eigen::MatrixXd A = Eigen::MatrixXd::Identity(total_.size(), total_.size()) - K * row.H.transpose();
+    // Joseph form, which keeps the covariance positive semi-definite for any gain.
     const Eigen::MatrixXd Pi_after = A * Pi * A.transpose() + R * K * K.transpose();
     Pd_ = (A * Pd_ * A.transpose() / w + ((b - bi) / (1 - w) + bi) * K * K.transpose()).eval();
     total_.set_x(total_.x() + K * innovation_m);

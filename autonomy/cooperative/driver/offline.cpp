@@ -177,7 +177,7 @@ void play(const NavRecord& record, const std::vector<NavOptions>& options, Run& 
 
 OfflineRun run_offline(const NavRecord& record, const Algorithm& algorithm, const std::vector<NavOptions>& options) {
   if (!algorithm.at_sea)
-    throw std::invalid_argument(algorithm.name + " has no use for ranges by sound: it works on land only");
+    throw std::invalid_argument(algorithm.name + " does not use acoustic ranges: it works on land only");
   OfflineRun run;
   run.algorithm = algorithm.name;
   run.estimates.resize(options.size());

@@ -42,6 +42,7 @@ const Algorithm& algorithm_named(const std::string& name) {
   if (found != algorithms_by_name().end()) return found->second;
   const auto made = made_algorithms().find(name);
   if (made != made_algorithms().end()) return made->second;
+  // Families make an algorithm from the rest of the name, such as python:FILE.Class.
   for (const auto& [prefix, make] : families_by_prefix())
     if (name.starts_with(prefix))
       return made_algorithms().emplace(name, make(name.substr(prefix.size()))).first->second;

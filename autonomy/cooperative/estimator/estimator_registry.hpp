@@ -18,8 +18,8 @@ struct Algorithm {
   std::string meaning;
   std::function<std::unique_ptr<Estimator>()> make;
   std::function<std::unique_ptr<TeamEstimator>()> make_team;  ///< of a reference that runs from a record only
-  bool on_land = true;  ///< it says what it does with relative measurements of other vehicles
-  bool at_sea = true;   ///< it uses ranges by sound
+  bool on_land = true;                                        ///< it handles relative measurements of other vehicles
+  bool at_sea = true;                                         ///< it uses ranges by sound
   /// Returns the CPU time that a program of the algorithm has used outside of this process; may be empty.
   std::function<double()> outside_cpu_s = {};
 };
@@ -67,8 +67,8 @@ constexpr bool is_at_sea() {
     return true;
 }
 
-/// Registers an algorithm, in its own file: an Estimator with `static constexpr const char* meaning`.  Without a
-/// on_bearing() of its own it does not work on land.
+/// Registers an algorithm, in its own file: an Estimator with `static constexpr const char* meaning`.  Without its
+/// own on_bearing() it does not work on land.
 #define SHOAL_ESTIMATOR(name, Type)                                                 \
   [[maybe_unused]] static const bool registered_estimator_##Type =                  \
       ::navigation::detail::add_algorithm({name,                                    \

@@ -54,7 +54,7 @@ inline constexpr std::size_t position_bytes = 12;
 /// Appends a position.  The covariance that is read is not smaller than the written one in its diagonal; deviations are
 /// limited to 1 cm to 655.35 m.
 void write_position(PayloadWriter& writer, const Position& position);
-/// Reads a position; nothing when bytes are missing or no position was written.
+/// Reads a position; std::nullopt if bytes are missing or no position was written.
 std::optional<Position> read_position(PayloadReader& reader);
 
 /// Appends a covariance in 6 bytes, as in a position.

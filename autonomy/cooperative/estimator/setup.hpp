@@ -40,7 +40,7 @@ struct Member {
   DeviceErrors errors;
 };
 
-/// Returns the index of the vehicle with this name; nothing when it is not among them.
+/// Returns the index of the vehicle with this name; std::nullopt if it is not among them.
 template <class Vehicle>
 std::optional<int> index_of_vehicle(const std::vector<Vehicle>& vehicles, const std::string& name) {
   for (std::size_t i = 0; i < vehicles.size(); ++i)
@@ -56,7 +56,7 @@ std::vector<Member> members_of(const std::vector<Vehicle>& vehicles) {
   return members;
 }
 
-/// What an estimator knows when it starts.
+/// Initial knowledge of an estimator.
 struct Setup {
   std::vector<Member> team;  ///< all vehicles that navigate together, in the order of the world file
   int own = 0;               ///< index of the own vehicle in `team`

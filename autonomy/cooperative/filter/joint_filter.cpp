@@ -60,6 +60,7 @@ int JointFilter::add_part(const Part& part) {
   P_.conservativeResize(n + part.layout.size, n + part.layout.size);
   P_.bottomRows(part.layout.size).setZero();
   P_.rightCols(part.layout.size).setZero();
+  // Numbers of parts stay valid when others are removed, so free ones are used again.
   const auto free = std::find_if(parts_.begin(), parts_.end(), [](const Part& each) { return !each.in_use; });
   if (free != parts_.end()) {
     *free = added;
@@ -86,6 +87,7 @@ int JointFilter::add(const DeviceErrors& errors, Time time, const Vector2& p_W, 
   set(layout.heading_bias, errors.heading_bias_rad);
   set(layout.slow_heading, errors.slow_heading_rad);
   set(layout.speed_scale, errors.speed_scale);
+  // The clock is estimated as a length, the error that it makes of a range.
   set(layout.clock, sound_speed_mps_ * errors.clock_s);
   set(layout.drift, sound_speed_mps_ * errors.clock_drift);
   set(layout.slow_fix, errors.slow_fix_m);
@@ -102,6 +104,7 @@ int JointFilter::add(const Position& position) {
 }
 
 int JointFilter::copy(int part) {
+  // A copy is a past state, which never moves again. Ranges depend on its position and clock only.
   Part copied;
   copied.time = at(part).time;
   const int from_clock = at(part).layout.clock;
@@ -115,6 +118,7 @@ int JointFilter::copy(int part) {
   for (int i = 0; i < copied.layout.size; ++i) {
     const int source = from + (i < 2 ? i : from_clock);
     x_[to + i] = x_[source];
+    // At this moment copy and source are the same random variable: equal variances and correlation 1.
     P_.row(to + i) = P_.row(source);
     P_.col(to + i) = P_.col(source);
     P_(to + i, to + i) = P_(source, source);
@@ -178,6 +182,7 @@ void JointFilter::apply(const Part& part, const Step& step, const Line& line) {
     if (layout.slow_heading >= 0) line(o + i) += step.per_heading_W[i] * line(o + layout.slow_heading);
     if (layout.speed_scale >= 0) line(o + i) += step.per_scale_W[i] * line(o + layout.speed_scale);
   }
+  // The clock is a length, and so is its drift in a second.
   if (layout.drift >= 0) line(o + layout.clock) += step.dt_s * line(o + layout.drift);
   if (layout.slow_heading >= 0) line(o + layout.slow_heading) *= step.slow_heading_kept;
   for (int i = 0; i < 2 && layout.slow_fix >= 0; ++i) line(o + layout.slow_fix + i) *= step.slow_fix_kept;
@@ -245,6 +250,8 @@ JointFilter::Outcome JointFilter::fix(int vehicle, const Vector2& p_W, double st
   if (gate_ > 0) {
     const Matrix2 S = H * P_ * H.transpose() + R;
     if (!(innovation.dot(S.inverse() * innovation) <= position_gate)) {
+      // Several refusals in a row mean that the filter is wrong, not the receiver. Its variance grows by the squared
+      // innovation, and the fix is used.
       if (++part.refused_fixes < max_refused_fixes || !innovation.allFinite()) return Outcome::refused;
       P_.block<2, 2>(o, o) += innovation.squaredNorm() * Matrix2::Identity();
     }
@@ -258,6 +265,7 @@ JointFilter::Outcome JointFilter::fix(int vehicle, const Vector2& p_W, double st
 JointFilter::RangeRow JointFilter::range_row(int own, const Position& other, double dz_m) const {
   const Part& part = at(own);
   const Vector2 d_W = position(own) - other.p_W;
+  // At the same place the direction is undefined.
   const double distance_m = std::max(std::hypot(d_W.norm(), dz_m), 0.1);
   RangeRow row;
   row.u = d_W / distance_m;
@@ -268,6 +276,8 @@ JointFilter::RangeRow JointFilter::range_row(int own, const Position& other, dou
     row.H[part.offset + part.layout.clock] = 1;
     row.predicted_m += x_[part.offset + part.layout.clock];
   }
+  // Second-order term of the range: for an error s across the line to the sender the mean of the range is off by s^2
+  // / 2r.
   const Matrix2 P = covariance(own) + other.P;
   const double sideways_m2 = std::max(0.0, P.trace() - row.u.dot(P * row.u));
   row.bend_variance_m2 = 3 * square(sideways_m2 / (2 * std::max(distance_m, 1.0)));

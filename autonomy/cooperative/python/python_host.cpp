@@ -106,7 +106,7 @@ PythonHost::~PythonHost() {
 
 void PythonHost::end() {
   { const bridges::FileDescriptor closed = std::move(to_child_); }  // the end of its input
-  // It closes its output at its end, unless the class never returns.
+  // The child closes its output when it ends, unless the class never returns.
   constexpr double timeout_s = 2;
   char rest[4096];
   while (!is_stuck_ && is_ready(from_child_.number(), POLLIN, std::min(timeout_s, limit_s_)) &&
@@ -137,6 +137,7 @@ void PythonHost::send(const nlohmann::json& request) {
   for (std::size_t done = 0; done < line.size();) {
     const ssize_t written = write(to_child_.number(), line.data() + done, line.size() - done);
     if (written < 0 && errno == EINTR) continue;
+    // The pipe is full while the child computes; the time limit holds for writing, too.
     if (written < 0 && errno == EAGAIN) {
       wait_for(to_child_, POLLOUT, request);
       continue;
@@ -148,6 +149,7 @@ void PythonHost::send(const nlohmann::json& request) {
 
 nlohmann::json PythonHost::request(const nlohmann::json& request) {
   send(request);
+  // One line of JSON for each request; the text after it belongs to the next answer.
   std::size_t end;
   while ((end = unread_.find('\n')) == std::string::npos) {
     wait_for(from_child_, POLLIN, request);

@@ -50,7 +50,7 @@ struct DeviceChannels {
 /// call. Handlers may publish and subscribe.
 class Client {
  public:
-  /// Reason why next_tick() returned nothing.
+  /// Reason why next_tick() returned std::nullopt.
   enum class End {
     none,       ///< the run continues
     last_tick,  ///< the simulator ended the run
@@ -120,8 +120,8 @@ class Client {
 
   /// Waits for the next tick, and returns its simulated time in microseconds.  In lockstep it first acknowledges the
   /// previous tick: messages published since then take effect in the next step.  All reports up to the tick have been
-  /// handled (without lockstep: those received so far).  Returns none when the run is over, also on further calls: see
-  /// end().  Throws std::logic_error before join() and follow().
+  /// handled (without lockstep: those received so far).  Returns std::nullopt if the run is over, also on further
+  /// calls: see end().  Throws std::logic_error before join() and follow().
   std::optional<std::int64_t> next_tick();
   /// Handles ticks up to the first one at or after `utime`, and returns its time as next_tick() does.
   std::optional<std::int64_t> wait_until(std::int64_t utime);
@@ -149,7 +149,8 @@ class Client {
   /// it.  Empty: as planned, without a warning.
   void set_reason_to_leave(const std::string& reason);
   /// Sets the handler of rewinds.  `handler(utime)` is called in next_tick() when the world was rewound, before any
-  /// message of the new branch is handled; held messages are dropped.  Without a handler next_tick() then returns none.
+  /// message of the new branch is handled; held messages are dropped.  Without a handler next_tick() then returns
+  /// std::nullopt.
   void on_rewind(std::function<void(std::int64_t utime)> handler);
   /// Returns the number of rewinds before the present tick.
   std::int32_t branch() const;

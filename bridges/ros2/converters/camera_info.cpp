@@ -58,7 +58,7 @@ bool write_camera_info(const shoal::image_t& message, std::string_view channel, 
   out.put_sequence(std::span<const double>(distortion));
   put_numbers(out, {focal_px[0], 0, cx, 0, focal_px[1], cy, 0, 0, 1});
   put_numbers(out, {1, 0, 0, 0, 1, 0, 0, 0, 1});
-  // Of the right camera of a pair -fx B, as sensor_msgs/CameraInfo says; without -0.
+  // -fx B for the right camera of a pair, as sensor_msgs/CameraInfo defines it; never -0.
   const double shift_px_m = 0.0 - focal_px[0] * baseline_of(message);
   put_numbers(out, {focal_px[0], 0, cx, shift_px_m, 0, focal_px[1], cy, 0, 0, 0, 1, 0});
   // No binning, and the region of interest is the whole image.

@@ -8,7 +8,7 @@
 namespace bridges::ros2 {
 namespace {
 
-/// Of the rotation only the yaw is estimated; its variance is not in the message.
+/// Only the yaw of the rotation is estimated; its variance is not in the message.
 bool write_estimate(const shoal::estimate_t& message, std::string_view, CdrWriter& out) {
   put_header(out, message.utime, world_frame);
   put_numbers(out, message.position_m);

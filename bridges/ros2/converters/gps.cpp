@@ -29,6 +29,7 @@ bool write_fix(const shoal::gps_data_t& message, std::string_view channel, CdrWr
   if (fix)
     put_numbers(out, {horizontal, 0, 0, 0, horizontal, 0, 0, 0, vertical});
   else
+    // NavSatFix has zeros for an unknown covariance, together with its type.
     out.put_array(std::span<const double>(unknown_3x3));
   out.put(fix ? covariance_diagonal : covariance_unknown);
   return true;

@@ -47,6 +47,7 @@ bool write_image(const shoal::image_t& message, std::string_view channel, CdrWri
                       message.size == std::int64_t{message.height} * message.row_stride;
     if (!fits) return false;
     put_header(out, message.utime, optical_frame_of(channel));
+    // raw16 holds depths in mm, which ROS names by the number type alone.
     put_image(out, message.height, message.width, is_number_image(message) ? "16UC1" : format.encoding,
               message.row_stride, message.data);
     return true;

@@ -37,6 +37,7 @@ class AssetReader {
 
 std::vector<sim::Vector3d> triangles_of_mesh(AssetReader in) {
   const std::size_t vertices = in.number<std::uint32_t>(), triangles = in.number<std::uint32_t>();
+  // Viewers slow down with larger meshes; a damaged asset must not be read beyond its end.
   if (triangles > max_marker_triangles || in.left() != 12 * (vertices + triangles)) return {};
   std::vector<sim::Vector3d> vertices_m(vertices), corners;
   for (sim::Vector3d& vertex : vertices_m)

@@ -20,6 +20,7 @@ Device device_of(const Json& device, std::string vehicle) {
   known.is_camera = text_at(*view, "kind") == "frustum";
   known.range_min_m = static_cast<float>(number_at(*view, "range_min_m"));
   if (const double range_m = number_at(*view, "range_m"); range_m > 0) known.range_max_m = static_cast<float>(range_m);
+  // A cone is given by half its opening.
   known.opening_rad = static_cast<float>(2 * number_at(*view, "half_angle_rad"));
   const auto axis = numbers_at<3>(*view, "axis");
   if (axis && sim::Vector3d(axis->data()).norm() > 0.5) known.axis = *axis;

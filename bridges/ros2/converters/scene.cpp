@@ -75,6 +75,7 @@ Marker marker_of(const Json& scene, const Json& body, const Json& part, std::siz
 
 void add_capsule(Marker marker, const Json& part, std::vector<Marker>& markers) {
   const double radius_m = number_at(part, "radius_m"), length_m = number_at(part, "length_m");
+  // Markers have no capsule: a cylinder and two spheres look like one.
   marker.type = MarkerType::cylinder;
   marker.scale = {2 * radius_m, 2 * radius_m, length_m};
   markers.push_back(marker);
@@ -152,6 +153,7 @@ void add_water(const Json& scene, std::vector<Marker>& markers) {
   Marker marker;
   marker.frame = world_frame;
   marker.name = "water";
+  // A marker must have a thickness, or RViz draws nothing.
   constexpr double thickness_m = 0.02;
   marker.scale = {water_m, water_m, thickness_m};
   marker.pose.translation().z() = number_at(*water, "level_m");
@@ -187,7 +189,7 @@ void put_all(CdrWriter& out, std::int64_t utime, const std::vector<Marker>& mark
   for (const Marker& marker : markers) put_marker(out, utime, marker);
 }
 
-/// All that can be drawn, in place of what was before; meshes and terrains as far as their assets are known.
+/// All that can be drawn, in place of what was before; meshes and terrains only if their assets are known.
 bool write_scene(const shoal::sim_scene_t& message, ConverterContext& context, CdrWriter& out) {
   const Json scene = Json::parse(message.scene, nullptr, false);
   if (!scene.is_object()) return false;

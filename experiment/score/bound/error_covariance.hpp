@@ -25,7 +25,7 @@ class ErrorCovariance {
   /// `H`: a column for each error.  A measurement whose innovation has a singular covariance has no effect.
   void update(const Eigen::MatrixXd& H, const Eigen::MatrixXd& R);
   /// Appends linear combinations of the present errors, C x, such as a position that a later measurement refers to.
-  /// They do not change with predictions.
+  /// These errors do not change with predictions.
   void append(const Eigen::MatrixXd& C);
   /// Adds linear combinations of the present errors to those from `first` on: x_first <- x_first + C x.
   void add(Eigen::Index first, const Eigen::MatrixXd& C);

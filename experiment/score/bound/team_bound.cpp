@@ -13,7 +13,7 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::Vector2d;
 
-/// Smallest variance of a fix or a sighting: a millimeter, so that the innovation never is singular.
+/// Smallest standard deviation of a fix or relative position, squared: 1 mm, so that the innovation is never singular.
 constexpr double min_variance_m2 = 1e-6;
 /// A vehicle that moves faster was placed elsewhere: it has not traveled the distance.
 constexpr double max_speed_mps = 200;
@@ -40,6 +40,7 @@ TeamBound::Pose between(const TeamBound::Pose& from, const TeamBound::Pose& to, 
 
 TeamBound::TeamBound(std::vector<VehicleErrors> team, int scored, const Options& options)
     : team_(std::move(team)), scored_(scored), options_(options), fixed_at_(team_.size(), sim::Time{0}) {
+  // One joint state of the team: sharing measurements correlates the errors of its members.
   std::vector<double> variances;
   for (const VehicleErrors& errors : team_)
     layouts_.push_back(make_layout(errors, static_cast<int>(variances.size()), variances));
@@ -81,6 +82,7 @@ TeamBound::Layout TeamBound::make_layout(const VehicleErrors& errors, int first,
     if (errors.gps) add_slow(errors.gps->position, axis, Known::gps_drift, Known::gps_drift, layout.fixes);
   const bool drifts = errors.clock_drift_std > 0 || errors.clock_random_walk_fm > 0;
   const bool errs = errors.clock_offset_std_s > 0 || errors.clock_white_fm > 0 || drifts;
+  // The remaining error of a disciplined clock is white and counts as noise of its stamps.
   if (errs && !errors.disciplined() && !knows(Known::clock)) {
     layout.clock = add(errors.clock_offset_std_s);
     if (drifts) layout.frequency = add(errors.clock_drift_std);
@@ -128,6 +130,8 @@ void TeamBound::add_range(sim::Time sent, const Site& sender, sim::Time arrived,
   const double stamps_s2 =
       square_of(errors(sender.vehicle).stamp_std_s()) + square_of(errors(receiver.vehicle).stamp_std_s());
   event.variance_m2 = square_of(event.sound_speed_mps) * stamps_s2 + more_variance_m2;
+  // The sound leaves, arrives and is known at different times: the errors of both vehicles enter when it leaves and
+  // arrives, but only the last event adds information.
   event.what = What::sending;
   event.site = sender;
   add_event(sent, event);
@@ -300,6 +304,8 @@ void TeamBound::handle(const Event& event, sim::Time at) {
       use_sighting(event, at);
       return;
     case What::sending:
+      // The error at the time of sending becomes its own state, which keeps its correlations until the range is
+      // used.
       covariance_.append(-point_row(event.site, at, event.toward) -
                          clock_row(event.site.vehicle, event.sound_speed_mps));
       pending_.push_back(event.packet);
@@ -307,6 +313,7 @@ void TeamBound::handle(const Event& event, sim::Time at) {
     case What::arrival: {
       const Eigen::Index index = pending_index(event.packet);
       if (index < 0) return;
+      // Now the state is the whole error of the range: that of the arrival less that of the sending.
       RowVectorXd row = point_row(event.site, at, event.toward) + clock_row(event.site.vehicle, event.sound_speed_mps);
       if (sound_speed_index_ >= 0) row[sound_speed_index_] = event.range_m;
       covariance_.add(index, row);
@@ -386,6 +393,7 @@ void TeamBound::visit_state(sim::StateArchive& archive) {
 }
 
 void TeamBound::check_restored(const sim::StateArchive& archive) const {
+  // A snapshot may be of another build, or damaged: its indices are used without further checks.
   if (covariance_.size() != base_size_ + static_cast<Eigen::Index>(pending_.size()))
     archive.fail("errors of another team");
   if (fixed_at_.size() != team_.size()) archive.fail("fixes of another team");

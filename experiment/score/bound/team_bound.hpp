@@ -22,9 +22,9 @@ namespace experiment {
 /// devices and the measurements that happened.  It is joint over the team: every measurement of every vehicle counts,
 /// with all correlations.
 ///
-/// The errors of a vehicle, in this order, as far as it has them: east and north of its frame (m), heading (rad, of
-/// wheels), speed scale, turn scale, slow errors of heading and velocity, slow errors of GPS (m), clock (s) and
-/// frequency.  docs/guides/navigation_bound.md has the equations.
+/// The errors of a vehicle, in this order, omitting those that it does not have: east and north of its frame (m),
+/// heading (rad, of wheels), speed scale, turn scale, slow errors of heading and velocity, slow errors of GPS (m),
+/// clock (s) and frequency.  docs/guides/navigation_bound.md has the equations.
 ///
 /// A range refers to the positions at transmission and at arrival, and counts from the time at which it is known.  So
 /// the recursion runs behind: measurements may be added in any order until advance() has passed their times.
@@ -75,7 +75,7 @@ class TeamBound {
   void add_range(sim::Time sent, const Site& sender, sim::Time arrived, const Site& receiver, sim::Time known,
                  double more_variance_m2);
   void add_sighting(sim::Time at, int observer, int other);
-  /// A sight by USBL, at the arrival of the sound.
+  /// Relative position by USBL, at the arrival of the sound.
   void add_usbl(sim::Time at, int observer, int other);
   /// Processes everything before a time, which must not be later than the last poses.
   void advance(sim::Time until);
@@ -110,7 +110,7 @@ class TeamBound {
   struct Event {
     What what = What::fix;
     Site site;      ///< receiver of the fix, sender or receiver of the sound, observer
-    int other = 0;  ///< sighting, USBL: vehicle that is seen
+    int other = 0;  ///< relative position, USBL: vehicle that is observed
     std::int64_t packet = 0;
     Eigen::Vector2d toward = Eigen::Vector2d::Zero();  ///< horizontal part of the unit vector from sender to receiver
     double range_m = 0, sound_speed_mps = 0, variance_m2 = 0;
@@ -129,7 +129,7 @@ class TeamBound {
   void handle(const Event& event, sim::Time at);
   void use_fix(const Event& event, sim::Time at);
   void use_sighting(const Event& event, sim::Time at);
-  /// Returns the covariance of the error of a sight, in the axes of the observer, of a displacement there.
+  /// Returns the error covariance of a relative position in the axes of the observer, for a displacement in these axes.
   Eigen::Matrix2d sight_covariance(const Event& event, const sim::Vector3d& d_V) const;
   /// Returns the row of the displacement of a point along `direction`.
   Eigen::RowVectorXd point_row(const Site& site, sim::Time at, const Eigen::Vector2d& direction) const;

@@ -26,7 +26,7 @@ struct UsblErrors {
   double range_std_m = 0;
   double across_std_rad = 0;     ///< of the direction
   double elevation_std_rad = 0;  ///< of the direction
-  double heading_std_rad = 0;    ///< of the heading of the vehicle, as far as it is not a state
+  double heading_std_rad = 0;    ///< of the heading of the vehicle, without the part that is a state
   std::optional<UsblHearing> hearing;
 
   /// Variances of a measured horizontal displacement: along it and across it.

@@ -98,7 +98,7 @@ VehicleErrors errors_of(const sim::VehicleConfig& vehicle, double step_s) {
   } else if (odometry) {
     read_wheels(odometry, vehicle, step_s, errors);
   }
-  // Fixes, ranges and sightings.
+  // Fixes, ranges and relative positions.
   if (const FirstDevice<devices::Gps> gps(vehicle); gps)
     errors.gps = VehicleErrors::Gps{gps.device->name, gps.device->position_m, errors_of(gps.params->horizontal_noise),
                                     errors_of(gps.params->velocity_noise).white_std, gps.params->disciplines_clock};

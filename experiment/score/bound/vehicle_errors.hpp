@@ -86,7 +86,7 @@ struct VehicleErrors {
   /// USBL of other vehicles.
   struct Usbl {
     Point sensor;
-    UsblErrors errors;  ///< with those of the heading, all in a vehicle without DVL, where they are not states
+    UsblErrors errors;  ///< including heading errors: all of them in a vehicle without DVL, where they are not states
   };
   std::optional<Usbl> usbl;
 

@@ -52,7 +52,7 @@ void CellHistory::visit_state(sim::StateArchive& archive) {
   if (archive.restoring() &&
       (frame_.width < 0 || frame_.height < 0 || frame_.width > max_map_cells || frame_.height > max_map_cells ||
        cells_.size() != frame_.size() || states_.size() != frame_.size() || changed_at_s_.size() != frame_.size()))
-    archive.fail("a history of cells whose number is not that of its map");
+    archive.fail("a cell history whose size differs from that of its map");
 }
 
 MapScores score_map(const GridMap& map, const CellHistory& truth, int tolerance, double now_s) {
@@ -62,10 +62,12 @@ MapScores score_map(const GridMap& map, const CellHistory& truth, int tolerance,
   MapScores scores;
   for (std::size_t i = 0; i < map.cells.size(); ++i) {
     const Cell actual = truth.now(i), mapped = map.cells[i];
+    // No sensor sees into a solid.
     if (actual == Cell::solid || actual == Cell::unknown) continue;
     const bool known = mapped != Cell::unknown;
     const bool matched = (actual == Cell::occupied ? near_mapped : near_true)[i] != 0;
     for (CellCounts* counts : {&scores.all, &scores.still}) {
+      // Near a change the tolerance would match the old place, so these cells are not counted as still.
       if (counts == &scores.still && near_change[i] != 0) continue;
       ++counts->observable;
       if (known)
@@ -76,6 +78,7 @@ MapScores score_map(const GridMap& map, const CellHistory& truth, int tolerance,
     if (!known || !truth.has_changed(i)) continue;
     ++scores.all.known_changed;
     const bool wrong = !matched && (actual == Cell::occupied || mapped == Cell::occupied);
+    // Only what was once true is stale; anything else is an error of mapping.
     if (!wrong || !truth.was(i, mapped)) continue;
     ++scores.all.stale;
     scores.all.stale_age_s += now_s - static_cast<double>(truth.changed_at_s(i));

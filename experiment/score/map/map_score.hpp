@@ -10,7 +10,7 @@
 
 namespace experiment {
 
-/// What the cells of the truth are, were, and since when.
+/// Present and earlier states of the true cells, with the times of their changes.
 class CellHistory {
  public:
   bool started() const { return frame_.width > 0; }

@@ -27,6 +27,7 @@ PublishedMap decode_map(std::span<const std::byte> payload) {
   published.utime = message.utime;
   published.map.frame = {message.origin_m[0], message.origin_m[1], message.cell_m, message.width, message.height};
   published.map.cells.reserve(message.cells.size());
+  // About the thresholds of ROS map_server, 0.65 and 0.196.
   for (const std::int8_t percent : message.cells)
     published.map.cells.push_back(percent >= 65                   ? Cell::occupied
                                   : percent >= 0 && percent <= 20 ? Cell::free
@@ -53,6 +54,7 @@ bool PublishedMaps::read_next() {
   bridges::LogEventView event;
   while (reader_.next(event)) {
     if (event.channel == "sim.info" && !knows_epoch_) learn_epoch(event.payload);
+    // Without sim.info, as in logs of other programs, time counts from the first event.
     if (!epoch_utime_) epoch_utime_ = event.utime;
     last_event_s_ = static_cast<double>(event.utime - *epoch_utime_) * 1e-6;
     if (event.channel != channel_) continue;
@@ -71,6 +73,7 @@ std::optional<GridMap> PublishedMaps::at(double at_s) {
   }
   if (!last_)
     throw std::runtime_error(fmt::format("{}: the first map on channel '{}' is at {:.6g} s", log_, channel_, next_s_));
+  // The last map is only known to be the last up to the last event of the log.
   if (!next_ && at_s > last_event_s_ + 1e-9) return std::nullopt;
   try {
     return decode_map(*last_).map;

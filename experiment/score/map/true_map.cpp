@@ -136,6 +136,7 @@ std::optional<MapArea> area_of_objects(const sim::World& world, double height_m)
     if (box && box->min().z() <= height_m && box->max().z() >= height_m) all.extend(*box);
   }
   if (all.isEmpty()) return std::nullopt;
+  // A margin of a meter, and whole meters, so that maps of one world agree.
   return MapArea{std::floor(all.min().x() - 1), std::floor(all.min().y() - 1), std::ceil(all.max().x() + 1),
                  std::ceil(all.max().y() + 1)};
 }

@@ -56,7 +56,7 @@ Columns columns_of_header(const LineReader& reader, const std::vector<Word>& wor
     if (!columns.contains(name))
       reader.fail(1, std::string("the columns must include ") + name +
                          "; columns that are read: " + sim::list_text(column_names()));
-  // Its height is not an estimate: it has no covariance.
+  // The height is not an estimate: it has no covariance.
   const auto is_covariance = [](const Word& word) { return word.text == "cov_xx_m2"; };
   if (own && std::any_of(words.begin(), words.end(), is_covariance) && !columns.contains("zz")) columns.erase("z");
   // The covariance is that of the positions.
@@ -86,6 +86,7 @@ sim::Matrix3d covariance_of(const LineReader& reader, const std::vector<Word>& w
   const auto number = [&](const char* name) {
     return reader.number_of(words[columns.at(name)], -max_covariance_m2, max_covariance_m2, name);
   };
+  // Without a z column its variance is 1, and only the block of x and y is used.
   sim::Matrix3d P = sim::Matrix3d::Identity();
   P(0, 0) = number("xx");
   P(1, 1) = number("yy");

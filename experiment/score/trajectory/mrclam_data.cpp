@@ -95,6 +95,7 @@ void parse_mrclam_measurements(std::string_view text, const std::string& file, c
     const MrclamData::Measurement measurement{time_s, subject == subjects.end() ? 0 : subject->second,
                                               reader.number_of(words[2], 0, max_mrclam_number, "a range"),
                                               mrclam_number(reader, words[3], "a bearing")};
+    // The data sets have barcodes that were misread; they are counted and dropped.
     if (subject == subjects.end())
       ++robot.unknown_barcodes;
     else

@@ -191,7 +191,7 @@ TEST(FollowBehavior, SaysWhomItNeverReceived) {
   params.vehicle = "nobody";
   FollowBehavior follow(params);
   follow.receive_state("auv", {});
-  EXPECT_EQ(follow.remark(), "it has not received any message from 'nobody', which it was to follow");
+  EXPECT_EQ(follow.remark(), "it has received no message from 'nobody', which it was to follow");
   follow.receive_state("nobody", {});
   EXPECT_EQ(follow.remark(), "");
 }

@@ -63,7 +63,7 @@ TEST(MapFile, ReportsWhatIsWrongWithItsPlace) {
               HasSubstr("b.yaml:2:13: map: 'resolution' must be >= 0.001 and <= 1, got 0"));
   EXPECT_THAT(reason(folder.with("image: a.png\norigin: [0, 0, 0]\n")), HasSubstr("map: missing key 'resolution'"));
   EXPECT_THAT(reason(folder.with("image: a.png\nresolution: 0.1\norigin: [0, 0, 0.5]\n")),
-              HasSubstr("'origin' must not be turned"));
+              HasSubstr("'origin' must have yaw 0"));
   EXPECT_THAT(reason(folder.with("image: a.png\nresolution: 0.1\norigin: [0, 0, 0]\nocupied_thresh: 0.6\n")),
               HasSubstr("did you mean 'occupied_thresh'?"));
   EXPECT_THAT(reason(folder.with("image: d.png\nresolution: 0.1\norigin: [0, 0, 0]\n")),

@@ -20,7 +20,7 @@ TEST(Autopilot, SaysWhatIsWrongWithItsParameters) {
   EXPECT_THAT(error("remus100_survey.yaml", "      devices.autopilot.thrusters: [rudder]\n"),
               HasSubstr("device 'autopilot': 'thrusters' names no thruster 'rudder'"));
   EXPECT_THAT(error("otter_autopilot.yaml", "      devices.autopilot.axes: [surge, sway]\n"),
-              HasSubstr("'axes': the thrusters cannot give sway beside the axes before it"));
+              HasSubstr("'axes': the thrusters cannot give sway in addition to the axes before it"));
   EXPECT_THAT(error("otter_autopilot.yaml", "      devices.autopilot.axes: [surge, jaw]\n"),
               HasSubstr("'axes' must be of surge, sway, heave, roll, pitch, yaw; got 'jaw'"));
   EXPECT_THAT(error("otter_autopilot.yaml", "      devices.autopilot.thruster_weights: [1]\n"),

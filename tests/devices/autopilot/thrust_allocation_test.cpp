@@ -178,7 +178,7 @@ TEST(ThrustAllocation, SaysWhichAxisTheThrustersCannotGive) {
     ThrustAllocation allocation({thruster({-1, 0.4, 0}, {0, 0, 0}), thruster({-1, -0.4, 0}, {0, 0, 0})}, {0, 1});
     FAIL();
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "the thrusters cannot give sway beside the axes before it");
+    EXPECT_STREQ(error.what(), "the thrusters cannot give sway in addition to the axes before it");
   }
 }
 

@@ -119,7 +119,8 @@ TEST(Gateway, SaysWhatIsWrongWithItsParameters) {
     return test::error_of_world(ship_buoy_auv(", destinations: " + names));
   };
   EXPECT_EQ(error_of("[ship, auv]"), "");
-  EXPECT_NE(error_of("[ship, aux]").find("'destinations' names no vehicle of the world 'aux'"), std::string::npos);
+  EXPECT_NE(error_of("[ship, aux]").find("'destinations' names a vehicle that is not in the world: 'aux'"),
+            std::string::npos);
   EXPECT_NE(error_of("[buoy, auv]").find("'destinations' names its own vehicle"), std::string::npos);
   EXPECT_NE(error("[radio]").find("'between' must name two different devices"), std::string::npos);
   EXPECT_NE(error("[radio, radio]").find("'between' must name two different devices"), std::string::npos);

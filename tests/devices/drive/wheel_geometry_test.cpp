@@ -84,7 +84,7 @@ TEST(WheelGeometry, IsWhatOdometryBelievesIn) {
   const std::string odometry =
       "        - {name: odometry, type: odometry, left_joint: left, right_joint: right, ticks_per_revolution: 100000";
   const auto yaml = [&](const std::string& keys) { return test::rover_world(odometry + keys + "}\n"); };
-  // Worn tyres and an eighth of a track: the first is usual, the second a mistake.
+  // Worn tires and an eighth of a track: the first is usual, the second a mistake.
   EXPECT_EQ(warnings_of(yaml("")), "");
   EXPECT_EQ(warnings_of(yaml(", wheel_radius_m: 0.105, track_m: 0.48")), "");
   EXPECT_THAT(warnings_of(yaml(", track_m: 0.4")), HasSubstr("it estimates 1.25 times the turn"));

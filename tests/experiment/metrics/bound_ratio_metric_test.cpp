@@ -40,7 +40,7 @@ TEST(BoundRatio, RefusesErrorsOfAnotherPosition) {
               HasSubstr("metric 'r': 'e' and 'b' must be of the same vehicle, got 'boat' and 'auv'"));
   EXPECT_THAT(error("vehicle: auv"), HasSubstr("metric 'r': 'e' and 'b' must have the same 'from_s', got 0 and 1"));
   EXPECT_THAT(error("vehicle: auv, from_s: 1, until_s: 2"),
-              HasSubstr("metric 'r': 'e' must not have 'until_s', got 2: the bound is until the end"));
+              HasSubstr("metric 'r': 'e' must not have 'until_s', got 2: the bound covers the whole run"));
   EXPECT_THAT(error("vehicle: auv, from_s: 1, dimensions: 3"),
               HasSubstr("metric 'r': 'e' must have 2 dimensions: the bound is horizontal"));
 }

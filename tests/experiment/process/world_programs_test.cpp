@@ -109,8 +109,9 @@ TEST_F(WorldPrograms, OtherWaysOfNamingAProgramAreErrors) {
   EXPECT_EQ(error("program: a, command: [a]"),
             "worlds/test.yaml:3:5: process 'p': needs either 'program' or 'command', not both");
   EXPECT_EQ(error("client: a"), "worlds/test.yaml:3:5: process 'p': needs either 'program' with 'args' or 'command'");
-  EXPECT_EQ(error("command: [a], args: {b: 1}"),
-            "worlds/test.yaml:3:35: process 'p': 'args' goes with 'program'; 'command' has its arguments in its list");
+  EXPECT_EQ(
+      error("command: [a], args: {b: 1}"),
+      "worlds/test.yaml:3:35: process 'p': 'args' needs 'program'; the arguments of 'command' belong into its list");
   EXPECT_EQ(error("command: pilot --fast"),
             "worlds/test.yaml:3:24: process 'p': 'command' must be a list; write 'command: [pilot, --fast]'");
   EXPECT_EQ(error("program: a, args: [1]"), "worlds/test.yaml:3:33: process 'p': 'args' must be a map, got [1]");

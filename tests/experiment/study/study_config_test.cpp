@@ -35,11 +35,11 @@ TEST(StudyConfig, ReportsWhatIsWrong) {
   EXPECT_THAT(error("cases: [{name: a, set: {physics.step_s: -1}}]\n"), HasSubstr("'step_s' must be"));
   EXPECT_THAT(error("cases: [{name: a, set: {run.duration_s: forever}}]\n"),
               HasSubstr("case 'a': its world runs without end"));
-  EXPECT_THAT(error("figures: [e.rms]\n"), HasSubstr("study.yaml:5:10: 'figures' names nothing of this world: 'e.rms'; "
+  EXPECT_THAT(error("figures: [e.rms]\n"), HasSubstr("study.yaml:5:10: 'figures' names nothing in this world: 'e.rms'; "
                                                      "known: e.final_m, e.max_gap_s, e.max_m, e.per_distance_percent"));
   EXPECT_THAT(error("plots: [{name: p}]\n"), HasSubstr("plot 'p': needs either 'figure' or 'metrics'"));
   EXPECT_THAT(error("plots: [{name: p, metrics: [e]}]\n"), HasSubstr("'metrics' are drawn over 'distance' or 'time'"));
-  EXPECT_THAT(error("plots: [{name: p, metrics: [f], over: time}]\n"), HasSubstr("names nothing of this world: 'f'"));
+  EXPECT_THAT(error("plots: [{name: p, metrics: [f], over: time}]\n"), HasSubstr("names nothing in this world: 'f'"));
   EXPECT_THAT(error("plots: [{name: p, figure: passed, cases: [b]}]\n"), HasSubstr("names no case 'b'"));
 }
 
@@ -66,7 +66,7 @@ TEST(StudyConfig, ReportsWhatIsWrongWithFactorsAndTheirDesign) {
               HasSubstr("'name' must not be that of another column of the tables, got 'seed'"));
   EXPECT_THAT(StudyFolder("batch: 5\n").error(), HasSubstr("'batch' needs 'until'"));
   EXPECT_THAT(StudyFolder("until: ci(e.rms) < 5 %\n").error(),
-              HasSubstr("'until' names nothing of this world: 'e.rms'"));
+              HasSubstr("'until' names nothing in this world: 'e.rms'"));
 }
 
 TEST(StudyConfig, PointsAtTheMistakeInARule) {

@@ -73,11 +73,11 @@ TEST(PayloadWalker, RefusesNanAndInfinityWhereFiniteIsRequired) {
 TEST(PayloadWalker, RefusesBadArrayLengths) {
   const MessageTypes types = types_of("struct b_t { int32_t n; double x[n]; int8_t k; byte y[k][n]; }");
   const MessageSchema& schema = *types.find("b_t");
-  EXPECT_EQ(error_of(schema, payload_of(schema, {0xff, 0xff, 0xff, 0xff})), "field 'x' has the negative size -1 ('n')");
+  EXPECT_EQ(error_of(schema, payload_of(schema, {0xff, 0xff, 0xff, 0xff})), "field 'x' has a negative size, -1 ('n')");
   EXPECT_EQ(error_of(schema, payload_of(schema, {0x7f, 0xff, 0xff, 0xff})),
             "payload of 12 bytes is too short for b_t: field 'x' needs 17179869176 more bytes");
   EXPECT_EQ(error_of(schema, payload_of(schema, {0, 0, 0, 0, 0})), "");
-  EXPECT_EQ(error_of(schema, payload_of(schema, {0, 0, 0, 0, 0x80})), "field 'y' has the negative size -128 ('k')");
+  EXPECT_EQ(error_of(schema, payload_of(schema, {0, 0, 0, 0, 0x80})), "field 'y' has a negative size, -128 ('k')");
 }
 
 // A decoder makes the outer vectors before it looks at the inner size: 2^31 of them for a message of 16

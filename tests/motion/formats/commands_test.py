@@ -46,7 +46,7 @@ class Commands(unittest.TestCase):
         ran = self.motion("export", "sway.yaml", "--format", "ros", "--output", "sway.ros", "--strict", code=1)
         self.assertEqual(ran.stderr.splitlines(), [
             "sway.yaml: 1 note of keys are not kept",
-            "sway.yaml: one cycle of the loop is written: who plays the file repeats it",
+            "sway.yaml: one cycle of the loop is written: the player of the file repeats it",
             "sway.yaml: nothing is written, because of --strict"])
         self.assertFalse(os.path.exists(self.path("sway.ros")))
         ran = self.motion("export", "sway.yaml", "--format", "ros", "--output", "sway.ros")

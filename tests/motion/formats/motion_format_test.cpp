@@ -29,7 +29,7 @@ TEST(MotionFormats, ListWhatTheyNeverKeep) {
   EXPECT_THAT(test::written("csv", motion).losses,
               testing::ElementsAre("the description is not kept", "names of 1 pose are not kept; their values are",
                                    "1 note of keys are not kept", HasSubstr("one cycle of the loop"),
-                                   "1 change of the world are not kept", "where it was recorded is not kept",
+                                   "1 change of the world are not kept", "the place of the recording is not kept",
                                    HasSubstr("'start' is not kept")));
 }
 

@@ -18,7 +18,7 @@ TEST(PosFormat, ReadsThePartsThatAreOutputs) {
   EXPECT_THAT(file.losses, IsEmpty());
   EXPECT_EQ(
       test::read_error("pos", "#POS\ncondensed ERS-7\n#END\n", test::leg_names()),
-      "file:2:1: postures for one model of robot are not supported: must be a name of an output, got 'condensed'");
+      "file:2:1: postures for a single robot model are not supported: must be a name of an output, got 'condensed'");
 }
 
 }  // namespace

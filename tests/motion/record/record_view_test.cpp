@@ -116,7 +116,7 @@ TEST(RecordView, IsSteeredByItsKeysOnly) {
   page.control("pause");
   const auto reply = page.reply();
   EXPECT_EQ(reply["ok"], false);
-  EXPECT_EQ(reply["text"], "a recording is steered by its keys");
+  EXPECT_EQ(reply["text"], "a recording is controlled by its keys");
 }
 
 /// A box that stands where nothing else is.
@@ -175,8 +175,7 @@ TEST(RecordView, RefusesWhatARecordingCannotHave) {
   // The first action of a list is taken back when the second one is refused.
   EXPECT_THAT(refused("do", "[" + add_box("box") + ", {remove: dog}]"), HasSubstr("cannot be removed"));
   EXPECT_THAT(refused("do", "{remove: box}"), HasSubstr("'remove' names no vehicle or object 'box'"));
-  EXPECT_THAT(refused("spawn", "{name: other, file: rover.yaml}"),
-              HasSubstr("one cannot be spawned, only objects be added"));
+  EXPECT_THAT(refused("spawn", "{name: other, file: rover.yaml}"), HasSubstr("only objects can be added"));
   // What makes the recording would stop, or play other frames.
   EXPECT_THAT(refused("do", "{set: {device: dog/player, values: {motions: []}}}"),
               HasSubstr("'dog/player' makes the recording, and cannot be changed by it"));

@@ -103,9 +103,10 @@ TEST(CtdFile, SkipsRowsWithMissingValuesAndSaysSo) {
     ASSERT_EQ(cast.warnings.size(), 1u) << row;
     EXPECT_THAT(cast.warnings[0], HasSubstr("1 row is skipped for missing values, the first in line 3: '")) << row;
   }
-  EXPECT_THAT(ctd_error(ctd_header + "1,-999,35\n2,-999,35\n"),
-              HasSubstr("needs two rows of rising depth below the header; 2 rows are skipped for missing values, the "
-                        "first in line 2: 'temperature_C' '-999'"));
+  EXPECT_THAT(
+      ctd_error(ctd_header + "1,-999,35\n2,-999,35\n"),
+      HasSubstr("needs two rows of increasing depth below the header; 2 rows are skipped for missing values, the "
+                "first in line 2: 'temperature_C' '-999'"));
 }
 
 TEST(CtdFile, ValuesOfNinesThatWaterCanHaveAreValues) {

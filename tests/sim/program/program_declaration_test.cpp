@@ -71,7 +71,7 @@ TEST(ProgramDeclaration, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(errors_of_arg("name: Speed, type: number"), ElementsAre(HasSubstr("must begin with a small letter")));
   EXPECT_THAT(errors_of_arg("name: a-b, type: number"), ElementsAre(HasSubstr("got 'a-b'")));
   EXPECT_THAT(errors_of_arg("name: a, type: text, min: 1"),
-              ElementsAre(HasSubstr("argument 'a': 'min' does not go with 'type: text'")));
+              ElementsAre(HasSubstr("argument 'a': 'min' does not apply to 'type: text'")));
   EXPECT_THAT(errors_of_arg("name: a, type: choice"), ElementsAre(HasSubstr("'type: choice' needs 'choices'")));
   EXPECT_THAT(errors_of_arg("name: a, type: tuple"), ElementsAre(HasSubstr("'type: tuple' needs 'columns'")));
   EXPECT_THAT(errors_of_arg("name: a, type: tuple, columns: [x], min_columns: 2"),
@@ -80,7 +80,7 @@ TEST(ProgramDeclaration, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(errors_of_arg("name: a, type: number, max: 2, default: 3"),
               ElementsAre(HasSubstr("argument 'a': 'default' must be <= 2, got 3")));
   EXPECT_THAT(errors_of_arg("name: a, type: number, required: true, default: 3"),
-              ElementsAre(HasSubstr("'default' does not go with 'required: true'")));
+              ElementsAre(HasSubstr("'default' cannot be combined with 'required: true'")));
   EXPECT_THAT(errors_of_arg("name: a, type: flag, needs: [b]"),
               ElementsAre(HasSubstr("'needs' of 'a' names no argument 'b'")));
   EXPECT_THAT(errors_of(std::string(head) + "args: [{name: a, type: flag}, {name: a, type: flag}]\n"),

@@ -98,7 +98,7 @@ TEST(HeightGrid, RefusesWhatIsNoGround) {
   EXPECT_EQ(error_of([&] { sim::check_heights(grid); }), "has a height that is not finite");
   grid.at(1, 2) = 20'001;
   EXPECT_EQ(error_of([&] { sim::check_heights(grid); }),
-            "spans 20001 m of height, more than the earth does: other units?");
+            "spans 20001 m of height, more than the earth does: wrong units?");
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) grid.at(i, j) = 100 * ((i + j) % 2);
   EXPECT_EQ(error_of([&] { sim::check_heights(grid); }),

@@ -91,7 +91,7 @@ TEST(AckermannCar, DrivesTheCircleOfItsSteering) {
     turned_rad += sim::yaw_of(moved.linear());
   }
   const double radius_m = 0.33 / std::tan(0.35);
-  EXPECT_NEAR(distance_m / turned_rad, radius_m, 0.005 * radius_m);  // 0.5 %: creep of the tyres
+  EXPECT_NEAR(distance_m / turned_rad, radius_m, 0.005 * radius_m);  // 0.5 %: creep of the tires
   EXPECT_NEAR(distance_m, 0.8 * 2.5, 0.005 * 2);
 }
 

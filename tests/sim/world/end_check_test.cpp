@@ -180,9 +180,10 @@ std::vector<std::string> end_of_command(const Message& command) {
 }
 
 TEST(EndCheck, NamesACommandToAPlaceInTheAirOrBelowTheBottom) {
-  EXPECT_THAT(end_of_command(shoal::helm_command_t{0, 1, unchanged, -15, unchanged}),
-              ElementsAre("device 'v/autopilot': it was commanded to a place whose depth -15 m is in the air: depths "
-                          "are positive downwards (at 0.00 s)"));
+  EXPECT_THAT(
+      end_of_command(shoal::helm_command_t{0, 1, unchanged, -15, unchanged}),
+      ElementsAre("device 'v/autopilot': it was commanded to a position whose depth -15 m is in the air: depths "
+                  "are positive downwards (at 0.00 s)"));
   EXPECT_THAT(end_of_command(shoal::helm_command_t{0, 1, unchanged, 15, unchanged}), IsEmpty());
   shoal::waypoints_command_t route{0, 1, {50}, {0}, {55}, 1.5, 0};
   EXPECT_THAT(end_of_command(route), ElementsAre(HasSubstr("depth 55 m is below the bottom, which is at 40 m there")));

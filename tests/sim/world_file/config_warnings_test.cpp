@@ -27,7 +27,7 @@ std::string world(const std::string& devices, const std::string& more = "") {
 
 TEST(ConfigWarnings, ReportARateAboveThatOfTheSteps) {
   EXPECT_EQ(warnings_of_file(world("        - {name: imu, type: imu, rate_hz: 300}\n")),
-            "worlds/test.yaml:11:43: vehicle 'r1': device 'imu': 'rate_hz' of 300 Hz is above that of the steps: it "
+            "worlds/test.yaml:11:43: vehicle 'r1': device 'imu': 'rate_hz' of 300 Hz is above the step rate: it "
             "becomes 100 Hz with 'step_s' 0.01\n");
 }
 
@@ -251,8 +251,8 @@ TEST(ConfigWarnings, ReportASpreadingThatRaysDoNotHave) {
                                       acoustics + "\n"));
   };
   EXPECT_EQ(text("{spreading: {factor: 1.5}}"),
-            "worlds/test.yaml:13:24: acoustics: 'spreading' has no effect: in this water sound travels along rays, and "
-            "their tubes are the spreading; remove it, or set 'propagation: straight'\n");
+            "worlds/test.yaml:13:24: acoustics: 'spreading' has no effect: in this water sound travels along rays, "
+            "whose ray tubes give the spreading; remove it, or set 'propagation: straight'\n");
   EXPECT_THAT(text("{spreading: {transition_range_m: 100}}"), HasSubstr("'spreading' has no effect"));
   EXPECT_EQ(text("{spreading: {factor: 2}}"), "");
   EXPECT_EQ(text("{spreading: {factor: 1.5}, propagation: straight}"), "");

@@ -24,7 +24,8 @@ TEST_F(FidelityFiles, MistakesInThemAreNamed) {
   write("c.csv", header + row(0) + "0.1,1,2,3,0,0,oops,0,0,0,0,0,0,0\n");
   EXPECT_THAT(error_of(cases("")), HasSubstr("c.csv:3:1: case 'c': must have finite numbers, got 'oops'"));
   write("c.csv", header + row(0) + row(0.1234));
-  EXPECT_THAT(error_of(cases("")), HasSubstr("c.csv: case 'c': a step of 0.005 s does not meet the row at t = 0.1234"));
+  EXPECT_THAT(error_of(cases("")),
+              HasSubstr("c.csv: case 'c': a step of 0.005 s does not reach the row at t = 0.1234"));
   write("c.csv", header + row(0) + row(0.1));
   EXPECT_THAT(error_of(cases("    inputs: [{device: wheel, column: push}]\n")),
               HasSubstr("cases.yaml:5:14: case 'c': vehicle 'bluerov2': there is no device 'wheel'; devices: wrench"));

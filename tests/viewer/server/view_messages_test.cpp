@@ -35,7 +35,7 @@ TEST(BusView, APageThatConnectsAgainGetsAllThatHolds) {
     bus.play(log.path);
     before.text("status", [](const auto& text) { return text["time_us"] == 10'000'000; });
   }
-  // Nothing more comes on the bus.
+  // Nothing more arrives on the bus.
   test::ViewPage page(bus.url());
   EXPECT_EQ(page.text("hello")["world"], "fall");
   page.text("status", [](const auto& text) { return text["time_us"] == 10'000'000; });

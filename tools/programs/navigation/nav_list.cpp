@@ -24,7 +24,7 @@ int run_list_command(int argc, const char* const* argv) {
   bool list = false;
   CLI::App app{"Lists algorithms of cooperative navigation.", "shoal-nav"};
   app.add_flag("--list", list, "print name and meaning of each algorithm")->required();
-  command_line::add_name_list(app, "--algorithm", names, "only these, such as python:FILE.Class");
+  command_line::add_name_list(app, "--algorithm", names, "list only these, such as python:FILE.Class");
   command_line::set_help_end(app, {{"shoal-nav --list", "shoal-nav --list --algorithm python:mine.Mine"},
                                    {{0, "all are known"}, {2, "wrong usage, or an algorithm is not known"}},
                                    {}});

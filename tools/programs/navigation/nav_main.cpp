@@ -48,6 +48,8 @@ int drive(const Options& options) {
   shoal::Client client(name, options.participation.lcm_url);
   State pilot;
   navigation::NavVehicle vehicle;
+  // The team is that of the resolved world, which the run publishes; until it comes, the program only takes part in
+  // the lockstep.
   client.subscribe<shoal::sim_info_t>("sim.info", [&](const shoal::sim_info_t& info) {
     if (!vehicle.name.empty()) return;
     const auto team = std::make_shared<const navigation::NavTeam>(navigation::team_of_text(info.resolved_config));
@@ -87,8 +89,8 @@ int run(int argc, char** argv) {
                    "length of each frame, equal for all vehicles: 10 and its payload");
   declared.number("depth_m", options.pilot.depth_m, 0, 10'000, "depth to dive to; 0: a surface craft");
   declared.choice("sound", options.sound, {"straight", "rays"},
-                  "how sound is assumed to travel: along straight lines, with the harmonic mean of its speed between "
-                  "both depths, or along rays that bend with its speed over the depth");
+                  "how sound is assumed to travel: along straight lines, with the harmonic mean of the sound speed "
+                  "between both depths, or along rays refracted by the sound speed profile");
   auto& start = options.pilot.navigation.start;
   declared.tuple(
       "start_m", {"x", "y"}, sim::any_place(),
@@ -126,7 +128,7 @@ int run(int argc, char** argv) {
   if (!options.pilot.algorithm->make)
     throw std::invalid_argument(options.algorithm + " has the measurements of all vehicles: it runs with --log only");
   if (!options.pilot.algorithm->at_sea)
-    throw std::invalid_argument(options.algorithm + " has no use for ranges by sound: it works on land only");
+    throw std::invalid_argument(options.algorithm + " does not use acoustic ranges: it works on land only");
   options.pilot.navigation.frame_bytes = static_cast<std::size_t>(options.frame_bytes);
   options.pilot.navigation.sound = navigation::sound_models().at(options.sound);
   options.pilot.access = options.marine.access();

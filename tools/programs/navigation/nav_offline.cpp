@@ -112,6 +112,7 @@ void check_record(const OfflineOptions& options, const NavRecord& record) {
 
 int navigate(const OfflineOptions& options) {
   check_options(options);
+  // The record tells whether its team is on land: there are no frames of an acoustic modem then.
   if (const auto land = read_land_record(options.log)) {
     check_record(options, land->run);
     const NavOptions of_all = options_of(options, {}, frame_bytes_of(options, land->run));
@@ -145,16 +146,16 @@ int run_offline_command(int argc, const char* const* argv) {
   app.add_option("--out", options.out, "folder for the estimates, as LCM event log, CSV, TUM and MR.CLAM files")
       ->type_name("DIR");
   app.add_option("--scores", options.scores, "file for the scores as JSON, with all digits")->type_name("FILE");
-  app.add_option("--period-s", options.period_s, "simulated seconds between two estimates; without it as in the run")
+  app.add_option("--period-s", options.period_s, "simulated seconds between two estimates; default: as in the run")
       ->type_name("S")
       ->check(command_line::number_from(0.001, 10));
   app.add_option("--from-s", options.from_s, "scores begin at this simulated time")
       ->type_name("S")
       ->check(command_line::number_from(0, 1e9));
-  app.add_option("--sound", options.sound, "how sound is assumed to travel: straight or rays; without it as in the run")
+  app.add_option("--sound", options.sound, "how sound is assumed to travel: straight or rays; default: as in the run")
       ->type_name("MODEL")
       ->check(CLI::IsMember(sound_models()));
-  app.add_option("--frame-bytes", options.frame_bytes, "length of the frames; without it as in the run")
+  app.add_option("--frame-bytes", options.frame_bytes, "length of the frames; default: as in the run")
       ->type_name("N")
       ->check(command_line::whole_from(11, 255));
   app.add_option("--gate", options.gate, "squared innovation over its variance above which a range is refused; 0: none")

@@ -42,6 +42,8 @@ void ScoreFile::write(const std::string& path) const {
   Json json{
       {"world", record_.world}, {"frame_bytes", frame_bytes_}, {"from_s", from_s_}, {"algorithms", Json::array()}};
   for (const OfAlgorithm& algorithm : algorithms_) {
+    // An algorithm that cannot work here is listed with the reason, so that a study can tell it from one that is
+    // missing.
     if (!algorithm.left_out.empty()) {
       json["algorithms"].push_back({{"name", algorithm.name}, {"left_out", algorithm.left_out}});
       continue;

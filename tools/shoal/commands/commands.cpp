@@ -21,7 +21,7 @@ struct Command {
   const char* description;
 };
 
-/// In the order of the help.  CMakeLists.txt says what each library consists of.
+/// Commands in the order of the help.  CMakeLists.txt lists the sources of each library.
 constexpr Command commands[] = {
     {run, "run", "", "Run a world"},
     {run, "replay", "records", "Replay the world of a log, and compare"},

@@ -9,7 +9,7 @@
 
 namespace tools {
 
-/// What `shoal run --view` needs of the library `page`.
+/// Interface of the library `page` for `shoal run --view`.
 struct LivePage {
   /// Returns the function that starts the page of a run; `view` must outlive it.  It throws bridges::WebError, and
   /// sim::ConfigError for the profile.

@@ -104,11 +104,11 @@ static void add_control_command(CLI::App& app, int& exit_code) {
       ->type_name("NUMBER")
       ->transform(command_line::number_or_word(-1e12, 1e12, "max").description(""));
   // Client and connection.
-  command->add_option("--client", arguments->client, "client name to use in requests; without it shoal-control-PID")
+  command->add_option("--client", arguments->client, "client name to use in requests; default shoal-control-PID")
       ->type_name("NAME");
   command
       ->add_option("--run", arguments->run,
-                   "folder of the run, with its key in run.key; without it the key in SHOAL_RUN_KEY, if set")
+                   "folder of the run, with its key in run.key; default: the key in SHOAL_RUN_KEY, if set")
       ->type_name("DIR");
   command->add_option("--timeout", arguments->timeout_s, "wall seconds to wait for the answer")
       ->type_name("S")

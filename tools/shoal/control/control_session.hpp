@@ -27,7 +27,7 @@ class ControlSession {
   /// Throws BusError.
   explicit ControlSession(const Options& options);
 
-  /// Returns the reply; nothing when none arrived in time, or a signal did.
+  /// Returns the reply; std::nullopt if none arrived in time, or a signal did.
   std::optional<shoal::sim_control_reply_t> send_request(const std::string& command, const std::string& text,
                                                          double value);
   /// Returns the error of a request without a reply.

@@ -98,7 +98,7 @@ class PadControls final : public Controls {
   bool read(Clock::time_point now) override {
     if (device_) {
       if (device_->read()) return true;
-      throw experiment::DriveError("the gamepad is gone");
+      throw experiment::DriveError("the gamepad was disconnected");
     }
     // Events of a file, at their recorded times.
     if (!start_) start_ = now;
@@ -196,14 +196,14 @@ std::optional<int> find_vehicle(const DriveArguments& arguments, RemoteVehicle& 
     }
     if (std::string_view(request) == "bus") vehicle.set_bus(reply->text);
   }
-  // Its description comes on another channel.
+  // The description of the vehicle comes on another channel.
   for (const auto deadline = Clock::now() + 5s;
        !vehicle.description() && Clock::now() < deadline && experiment::caught_signal() == 0;) {
     vehicle.take();
     std::this_thread::sleep_for(5ms);
   }
   if (vehicle.description()) return std::nullopt;
-  std::cerr << "shoal drive: no description of '" << arguments.vehicle << "' came on 'sim.vehicle'\n";
+  std::cerr << "shoal drive: no description of '" << arguments.vehicle << "' arrived on 'sim.vehicle'\n";
   return exit_timeout;
 }
 
@@ -318,24 +318,22 @@ static void add_drive_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<DriveArguments>();
   add_log_level_option(*command);
   command->add_option("NAME", arguments->vehicle, "vehicle to drive");
-  command
-      ->add_option("--kind", arguments->kind,
-                   "what to command; without it the one that fits the devices of the vehicle")
+  command->add_option("--kind", arguments->kind, "what to command; default: what the devices of the vehicle support")
       ->type_name("KIND")
       ->check(one_of({"twist", "tilt", "helm", "thrust", "camera", "joints"}));
   // Controls.
   command->add_option("--profile", arguments->profile, "file with keys, axes, limits and rates")->type_name("FILE");
-  command->add_flag("--print-profile", arguments->print_profile, "print the profile of the program, to be changed");
+  command->add_flag("--print-profile", arguments->print_profile, "print the built-in profile, as a start for your own");
   CLI::Option* gamepad =
       command->add_option("--gamepad", arguments->gamepad, "gamepad instead of keys: /dev/input/eventX")
           ->type_name("DEVICE");
-  command->add_option("--events", arguments->events, "play a file of the events of a gamepad, at their recorded times")
+  command->add_option("--events", arguments->events, "play a file of gamepad events at their recorded times")
       ->type_name("FILE")
       ->excludes(gamepad);
   // Connection.
   command
       ->add_option("--run", arguments->run,
-                   "folder of the run, with its key in run.key; without it the key in SHOAL_RUN_KEY, if set")
+                   "folder of the run, with its key in run.key; default: the key in SHOAL_RUN_KEY, if set")
       ->type_name("DIR");
   command->add_option("--timeout", arguments->timeout_s, "wall seconds to wait for the simulator")
       ->type_name("S")
@@ -350,8 +348,8 @@ static void add_drive_command(CLI::App& app, int& exit_code) {
         "shoal drive rover1 --profile my_pad.yaml --run results/dive1", "shoal drive rover1 --events lap.events"},
        {{0, "ended by Ctrl-C or the end of the events; the vehicle got its safe command"},
         {1, "the simulator refused; the reason is on stderr"},
-        {2, "wrong usage, an error of the profile, or a vehicle that cannot be driven so"},
-        {4, "bus error, or the gamepad is gone; the vehicle got its safe command"},
+        {2, "wrong usage, an error of the profile, or a vehicle that cannot be driven that way"},
+        {4, "bus error, or the gamepad was disconnected; the vehicle got its safe command"},
         {5, "no simulator answered in time"}},
        {}});
   command->callback([arguments, &exit_code] { exit_code = drive(*arguments); });

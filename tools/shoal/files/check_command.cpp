@@ -69,7 +69,7 @@ void print_tipping(const sim::VehicleConfig& vehicle) {
     if (std::isinf(tipping)) continue;
     std::cout << "note: vehicle '" << vehicle.vehicle << "': nothing keeps it level: above "
               << sim::number_text(std::round(100 * tipping) / 100)
-              << " m/s ahead the Munk moment of its added mass turns it over (" << vehicle.description << ")\n";
+              << " m/s ahead, the Munk moment of its added mass turns it over (" << vehicle.description << ")\n";
   }
 }
 
@@ -161,7 +161,9 @@ void check(const std::string& path, const sim::LoadOptions& options) {
     return check_in_water(std::move(vehicle), options);
   }
   sim::LoadOptions with_messages = options;
+  // Actions of events hold messages, which are encoded here so that mistakes in their fields are found.
   with_messages.encode_message = shoal::encode_own_message;
+  // Without the resolved text, which only a run publishes.
   with_messages.resolve = false;
   sim::LoadedWorld loaded = sim::load_world(path, with_messages);
   experiment::read_programs(loaded, {true, options.allow_paths});

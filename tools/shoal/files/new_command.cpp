@@ -142,7 +142,7 @@ static void add_new_command(CLI::App& app, int& exit_code) {
   CLI::App* world = add_kind(*command, "world", "A world of one vehicle", *arguments);
   world
       ->add_option("--vehicle", arguments->vehicle,
-                   "vehicle file, from where the world is; unset: a shipped rover or AUV")
+                   "vehicle file, relative to the world; unset: a shipped rover or AUV")
       ->type_name("FILE");
   world->add_flag("--under-water", arguments->under_water, "an AUV in the sea instead of a rover on land");
   const std::vector<std::pair<int, std::string>> exit_codes = {

@@ -31,7 +31,7 @@ int render(const FilmArguments& arguments) {
   }
   const viewer::FilmOutcome outcome = viewer::make_film(arguments.film);
   if (outcome.interrupted) {
-    std::cerr << "shoal: interrupted after " << outcome.frames << " frames; there is no film\n";
+    std::cerr << "shoal: interrupted after " << outcome.frames << " frames; no film was written\n";
     return 128 + experiment::caught_signal();
   }
   std::cout << outcome.to_text(arguments.film);
@@ -73,7 +73,7 @@ void add_film_options(CLI::App& command, FilmArguments& arguments) {
   command
       .add_option("--camera", film.cameras,
                   "all, top, top:VEHICLE, chase:VEHICLE, orbit:VEHICLE, from:VEHICLE/CAMERA, or a file *.yaml with key "
-                  "poses; without it all. Given twice: side by side")
+                  "poses; default all. Given twice: side by side")
       ->type_name("CAMERA")
       ->type_size(1)
       ->allow_extra_args(false);
@@ -84,7 +84,9 @@ void add_film_options(CLI::App& command, FilmArguments& arguments) {
       ->type_name("S")
       ->check(number_from(0, 1e9))
       ->capture_default_str();
-  command.add_option("--to", film.until_s, "and of the last; without it the end of the log, or 10 s of film")
+  command
+      .add_option("--to", film.until_s,
+                  "simulated time of the last frame, s; default: the end of the log, or 10 s of film")
       ->type_name("S")
       ->check(number_from(0, 1e9));
   command.add_option("--speed", film.speed, "playback speed: simulated seconds per second of film")
@@ -114,12 +116,11 @@ void add_film_options(CLI::App& command, FilmArguments& arguments) {
 }
 
 void add_clip_options(CLI::App& command, viewer::ClipOptions& clips) {
-  CLI::Option* directory =
-      command
-          .add_option("--clips", clips.directory,
-                      "instead of one film, a clip of each event of a log in this folder; the camera follows the "
-                      "vehicle that the event names")
-          ->type_name("DIR");
+  CLI::Option* directory = command
+                               .add_option("--clips", clips.directory,
+                                           "write a clip of each event of a log to this folder instead of one film; "
+                                           "the camera follows the vehicle that the event names")
+                               ->type_name("DIR");
   for (const char* other : {"--out", "--camera", "--split", "--from", "--to"})
     directory->excludes(command.get_option(other));
   command.add_option("--before", clips.before_s, "lead-in before each event, s of simulated time")
@@ -137,7 +138,7 @@ void add_clip_options(CLI::App& command, viewer::ClipOptions& clips) {
       ->check(whole_from(1, 10'000))
       ->capture_default_str()
       ->needs(directory);
-  command.add_option("--clips-as", clips.ending, "kind of the clips: .mp4, .webm, .avi")
+  command.add_option("--clips-as", clips.ending, "file type of the clips: .mp4, .webm, .avi")
       ->type_name("ENDING")
       ->check(one_of({".mp4", ".webm", ".avi"}).description(""))
       ->capture_default_str()
@@ -177,7 +178,7 @@ static void add_film_command(CLI::App& app, int& exit_code) {
         {2, "wrong usage, a mistake in the world, a camera or vehicle that does not exist"},
         {3, "physics fault"},
         {4, "the log cannot be replayed, the film cannot be written, or ffmpeg failed or is missing"},
-        {130, "ended by Ctrl-C; there is no film"}},
+        {130, "ended by Ctrl-C; no film is written"}},
        {"A log is replayed with its recorded inputs, without verifying it: see shoal replay. A world is run without "
         "its "
         "programs."}});

@@ -30,8 +30,8 @@ ImageSize parse_image_size(const std::string& text) {
 void add_visibility_option(CLI::App& command, std::string& text) {
   command
       .add_option("--visibility", text,
-                  "distance at which a black target disappears in the water, m: 1 harbour, 10 coast, 60 clearest sea; "
-                  "more is clearer than nature. none: invisible water. Without it 60")
+                  "distance at which a black target disappears in the water, m: 1 harbor, 10 coast, 60 clearest sea; "
+                  "larger values are clearer than any sea. none: invisible water. Default 60")
       ->type_name("M");
 }
 

@@ -114,6 +114,7 @@ int map(const MapArguments& arguments) {
     throw CLI::ValidationError("--out", "must end in .png, got '" + arguments.out + "'");
   if (arguments.every_s && arguments.until_s < arguments.at_s)
     throw CLI::ValidationError("--until", "must not be before --at");
+  // Checked before the run, which may take minutes.
   check_writable(numbered(arguments, 0));
   if (!arguments.channel.empty() && !viewer::is_event_log(arguments.source))
     throw std::runtime_error(arguments.source + ": --channel needs a log of shoal run --record");
@@ -133,7 +134,7 @@ void add_map_options(CLI::App& command, MapArguments& arguments) {
       ->check(number_from(0, 1e9))
       ->capture_default_str();
   CLI::Option* every =
-      command.add_option("--every", arguments.every_s, "interval of further maps in seconds: NAME_0000.png and so on")
+      command.add_option("--every", arguments.every_s, "interval between maps, s: writes NAME_0000.png and so on")
           ->type_name("S");
   CLI::Option* until = command.add_option("--until", arguments.until_s, "time of the last map, s")->type_name("S");
   every->check(number_from(1e-6, 1e9))->needs(until);
@@ -148,7 +149,7 @@ void add_map_options(CLI::App& command, MapArguments& arguments) {
       ->capture_default_str();
   command
       .add_option("--area", arguments.area,
-                  "smallest x and y, and largest x and y, m; without it all objects at this height")
+                  "smallest x and y, and largest x and y, m; default: all objects at this height")
       ->type_name("X,Y,X,Y");
 }
 

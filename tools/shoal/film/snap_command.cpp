@@ -36,7 +36,7 @@ struct SnapArguments {
   bool all = false;
   int quality = 90;
   std::string visibility, overlays = "none", shapes = "drawn";
-  // What the texts above give.
+  // Values parsed from the texts above.
   std::optional<double> visibility_m;
   viewer::OverlayChoice overlay;
 
@@ -72,6 +72,7 @@ SnapView free_view(const SnapArguments& arguments, const sim::World& world) {
     return view;
   }
   const sim::Vector3d eye_W = parse_point("--eye", arguments.eye), look_W = parse_point("--look", arguments.look);
+  // The direction would be undefined.
   if ((look_W - eye_W).norm() < 1e-6) throw CLI::ValidationError("--look", "must not be the point of --eye");
   view.scene.X_WS = viewer::look_at(eye_W, look_W);
   return view;
@@ -100,6 +101,7 @@ SnapView make_view(const SnapArguments& arguments, const sim::World& world) {
                                                                      : sim::ImageKind::color;
   }
   if (arguments.antialias) view.antialias = *arguments.antialias;
+  // Averages of depths or labels mean nothing.
   if (view.options.kind != sim::ImageKind::color) view.antialias = 1;
   if (view.options.kind != sim::ImageKind::color && arguments.overlay.shapes != viewer::BodyShapes::drawn)
     throw CLI::ValidationError("--shapes", "must be drawn for an image without color");
@@ -214,9 +216,9 @@ void add_view_options(CLI::App& command, SnapArguments& arguments) {
   CLI::Option* from =
       command.add_option("--from", arguments.from, "a camera of the world")->type_name("VEHICLE.DEVICE");
   CLI::Option* eye =
-      command.add_option("--eye", arguments.eye, "position of the camera, m; without it all vehicles are in view")
+      command.add_option("--eye", arguments.eye, "position of the camera, m; default: all vehicles are in view")
           ->type_name("X,Y,Z");
-  CLI::Option* all = command.add_flag("--all", arguments.all, "all objects are in view, too, apart from planes");
+  CLI::Option* all = command.add_flag("--all", arguments.all, "all objects are in view too, except planes");
   CLI::Option* look =
       command.add_option("--look", arguments.look, "point that the camera looks at, m")->type_name("X,Y,Z");
   CLI::Option* fov =
@@ -230,12 +232,11 @@ void add_view_options(CLI::App& command, SnapArguments& arguments) {
   all->excludes(eye);
   // Kind of image.
   command
-      .add_option(
-          "--image", arguments.image,
-          "rgb, grey, depth, segmentation_parts or segmentation_vehicles; without it rgb, or as --from takes it")
+      .add_option("--image", arguments.image,
+                  "rgb, grey, depth, segmentation_parts or segmentation_vehicles; default rgb, or that of --from")
       ->type_name("KIND")
       ->check(one_of({"rgb", "grey", "depth", "segmentation_parts", "segmentation_vehicles"}).description(""));
-  command.add_option("--antialias", arguments.antialias, "rays along each side of a pixel; without it 2")
+  command.add_option("--antialias", arguments.antialias, "rays along each side of a pixel; default 2")
       ->type_name("N")
       ->check(whole_from(1, 4));
   command.add_option("--quality", arguments.quality, "of a JPEG")
@@ -254,16 +255,15 @@ static void add_snap_command(CLI::App& app, int& exit_code) {
   command->add_option("WORLD", arguments->world, "world file, or the name of a shipped world");
   command
       ->add_option("--log", arguments->log,
-                   "log of shoal run --record instead of a world: its run, with what its programs did")
+                   "log of shoal run --record instead of a world: replays the run with its recorded inputs")
       ->type_name("LOG");
-  command->add_option("--out", arguments->out, "file of the image: .png, .jpg or .jpeg")->type_name("FILE")->required();
+  command->add_option("--out", arguments->out, "image file: .png, .jpg or .jpeg")->type_name("FILE")->required();
   command->add_option("--at", arguments->at_s, "simulated time, s")
       ->type_name("S")
       ->check(number_from(0, 1e9))
       ->capture_default_str();
   CLI::Option* every =
-      command
-          ->add_option("--every", arguments->every_s, "interval of further images in seconds: NAME_0000.png and so on")
+      command->add_option("--every", arguments->every_s, "interval between images, s: writes NAME_0000.png and so on")
           ->type_name("S");
   CLI::Option* until = command->add_option("--until", arguments->until_s, "time of the last image, s")->type_name("S");
   every->check(number_from(1e-6, 1e9))->needs(until);

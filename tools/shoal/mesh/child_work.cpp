@@ -54,7 +54,7 @@ void write_all(int to, const std::string& bytes) {
   _exit(0);
 }
 
-/// Reads all bytes up to the end; nothing when the time limit is exceeded.
+/// Reads all bytes up to the end; std::nullopt if the time limit is exceeded.
 std::optional<std::string> read_until(int from, Clock::time_point deadline) {
   std::string bytes;
   std::string chunk(1 << 16, '\0');
@@ -77,8 +77,11 @@ std::string do_in_child(const std::function<std::string()>& work, const ChildLim
       Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits.time_s));
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw ChildError("could not be started");
+  // Assimp may crash, loop or take all memory on a broken file. A child process keeps that from the command, and from
+  // its users.
   const pid_t child = fork();
   if (child == 0) be_child(work, limits, ends[1]);
+  // The end for writing must be closed here, or reading would never see the end of the child's output.
   close(ends[1]);
   std::optional<std::string> bytes;
   if (child > 0) bytes = read_until(ends[0], deadline);

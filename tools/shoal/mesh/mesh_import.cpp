@@ -107,6 +107,7 @@ sim::Mesh unpacked(const std::string& bytes) {
 }
 
 std::string binary_stl(const sim::Mesh& mesh) {
+  // Binary STL: 80 bytes of head, a count, and 50 bytes for each triangle, little-endian.
   std::string bytes(80, ' ');
   const auto put = [&](const auto& value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
   put(static_cast<std::uint32_t>(mesh.triangles.size()));
@@ -142,6 +143,7 @@ sim::Mesh import_mesh(const std::string& path, const MeshImportOptions& options)
     try {
       return packed(read_with_assimp(path, options));
     } catch (const sim::MeshError& problem) {
+      // Errors of the mesh come back from the child as text; the first byte tells them from a mesh.
       return std::string("e") + problem.what();
     }
   };

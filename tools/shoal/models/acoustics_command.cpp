@@ -48,6 +48,7 @@ std::vector<double> parse_ranges(const std::string& text) {
                                "got '" +
                                    text + "'");
   std::vector<double> ranges_m;
+  // By multiplication, since sums of the step would miss the end by rounding.
   for (int i = 0; (*numbers)[0] + i * (*numbers)[2] <= (*numbers)[1] * (1 + 1e-12); ++i)
     ranges_m.push_back((*numbers)[0] + i * (*numbers)[2]);
   return ranges_m;
@@ -89,6 +90,7 @@ std::vector<verification::AcousticPacket> packets_of(const AcousticsArguments& a
   }
   if (arguments.micromodem)
     for (verification::AcousticPacket packet : verification::micromodem_packets()) {
+      // A bandwidth that is given holds for all packets.
       if (arguments.bandwidth_Hz) packet.bandwidth_Hz.reset();
       packets.push_back(packet);
     }
@@ -96,6 +98,7 @@ std::vector<verification::AcousticPacket> packets_of(const AcousticsArguments& a
   if (modem != nullptr)
     return {*verification::parse_packet(fmt::format("{}:{}:{}", sim::to_string(modem->modulation), modem->bit_rate_bps,
                                                     std::int64_t{modem->frames} * modem->frame_bytes))};
+  // Without a modem: examples, from slow and robust to fast.
   for (const char* text : {"fsk:80:32", "psk:500:64", "psk:5300:256", "dpsk:1200:256"})
     packets.push_back(*verification::parse_packet(text));
   return packets;
@@ -148,7 +151,7 @@ verification::AcousticLink link_of(const AcousticsArguments& arguments, const si
   return link;
 }
 
-/// Returns the depth of the fixed bottom below the middle of the link, for echoes; nothing if there is none.
+/// Returns the depth of the fixed bottom below the middle of the link, for echoes; std::nullopt if there is none.
 std::optional<double> water_depth_m(const verification::AcousticLink& link, const sim::World& world) {
   sim::Vector3d p_W = (link.from.p_W + link.to.p_W) / 2;
   const double surface_m = world.medium().surface_m(p_W.x(), p_W.y());
@@ -245,8 +248,9 @@ int show(AcousticsArguments& arguments) {
   const std::optional<double> depth_m = arguments.water_depth_m ? arguments.water_depth_m : water_depth_m(link, world);
   if (!arguments.rays.empty()) {
     if (!verification::sound_bends(config.acoustics, world.medium()))
-      throw CLI::ValidationError("--rays",
-                                 "sound is straight in this world: give its water a profile, or 'propagation: rays'");
+      throw CLI::ValidationError(
+          "--rays",
+          "sound travels along straight lines in this world: give its water a profile, or 'propagation: rays'");
     const double source_m = world.medium().still_surface_m() - link.from.p_W.z();
     const double level_m = (link.to.p_W - link.from.p_W).head<2>().norm();
     verification::draw_rays(verification::ray_field(source_m, std::max(level_m, 1.0), link.centre_Hz, config.acoustics,
@@ -292,7 +296,7 @@ void add_link_options(CLI::App& command, AcousticsArguments& arguments) {
       ->capture_default_str();
   command
       .add_option("--water-depth", arguments.water_depth_m,
-                  "depth of a flat bottom for echoes, m; without it that of the world below the middle of the link")
+                  "depth of a flat bottom for echoes, m; default: the depth of the world below the middle of the link")
       ->type_name("M")
       ->check(number_from(0.1, 12000));
 }
@@ -301,17 +305,17 @@ void add_signal_options(CLI::App& command, AcousticsArguments& arguments) {
   // Level and band.
   command
       .add_option("--level", arguments.level_dB,
-                  "source level, dB re 1 uPa at 1 m; without it that of the sending modem, else 185")
+                  "source level, dB re 1 uPa at 1 m; default: that of the sending modem, else 185")
       ->type_name("DB")
       ->check(number_from(-100, 300));
   command
       .add_option("--frequency", arguments.frequency_Hz,
-                  "center of the band, Hz; without it that of the sending modem, else 25000")
+                  "center of the band, Hz; default: that of the sending modem, else 25000")
       ->type_name("HZ")
       ->check(number_from(10, 1e6));
   command
       .add_option("--bandwidth", arguments.bandwidth_Hz,
-                  "bandwidth of the signal, Hz; without it that of the sending modem, else 4000")
+                  "bandwidth of the signal, Hz; default: that of the sending modem, else 4000")
       ->type_name("HZ")
       ->check(number_from(0.1, 1e6));
   // Packets.
@@ -319,22 +323,22 @@ void add_signal_options(CLI::App& command, AcousticsArguments& arguments) {
       ->type_name("PACKET")
       ->type_size(1)
       ->allow_extra_args(false);
-  command.add_flag("--micromodem", arguments.micromodem, "a frame of each rate of the WHOI Micro-Modem");
+  command.add_flag("--micromodem", arguments.micromodem, "tabulate a frame of each rate of the WHOI Micro-Modem");
   // Receiver.
   command
       .add_option("--detection", arguments.detection_dB,
-                  "signal-to-noise ratio that the receiver needs, dB; without it that of the transducer, else 6")
+                  "signal-to-noise ratio that the receiver needs, dB; default: that of the transducer, else 6")
       ->type_name("DB")
       ->check(number_from(-60, 100));
   command
       .add_option("--coding-gain", arguments.coding_gain_dB,
-                  "added to Eb/N0, dB; without it that of the sending modem, else 0")
+                  "coding gain added to Eb/N0, dB; default: that of the sending modem, else 0")
       ->type_name("DB")
       ->check(number_from(-60, 60));
 }
 
 void add_options(CLI::App& command, AcousticsArguments& arguments) {
-  command.add_option("WORLD", arguments.world, "world file; without it open water with 5 m/s of wind");
+  command.add_option("WORLD", arguments.world, "world file; default: open water with 5 m/s of wind");
   add_link_options(command, arguments);
   add_signal_options(command, arguments);
   command.add_option("--ranges", arguments.ranges, "a table over range, m, as CSV: from:to:step")->type_name("RANGES");
@@ -367,7 +371,7 @@ static void add_acoustics_command(CLI::App& app, int& exit_code) {
                   "shoal acoustics worlds/coop_underwater.yaml --depth 2 --range 1000 --rays rays.png",
                   "shoal acoustics --closed-forms tests/fidelity/reference/closed_forms.csv"},
                  {{0, "success"},
-                  {1, "a closed form was not met"},
+                  {1, "a closed form was not matched"},
                   {2, "wrong usage, or a mistake in the world"},
                   {4, "file error"}},
                  {"docs/models/acoustics.md has the equations."}});

@@ -95,14 +95,17 @@ static void add_bench_command(CLI::App& app, int& exit_code) {
       ->check(one_of(names).description(""))
       ->default_str("land");
   command
-      ->add_option("--vehicles,--robots", arguments->vehicles, "how many; several runs one after the other: 1,10,100")
+      ->add_option("--vehicles,--robots", arguments->vehicles,
+                   "number of vehicles; a list such as 1,10,100 gives one run each")
       ->type_name("N,N,...")
       ->delimiter(',')
       ->type_size(1)
       ->allow_extra_args(false)
       ->check(whole_from(1, 100000).description("each from 1 to 100000"))
       ->default_str("by scene");
-  command->add_option("--threads", arguments->threads, "threads; several runs: 1,2,4; 0: one for each processor")
+  command
+      ->add_option("--threads", arguments->threads,
+                   "number of threads; a list such as 1,2,4 gives one run each; 0: one per processor")
       ->type_name("N,N,...")
       ->delimiter(',')
       ->type_size(1)
@@ -127,7 +130,7 @@ static void add_bench_command(CLI::App& app, int& exit_code) {
   command_line::set_help_end(*command, {{"shoal bench", "shoal bench sea naive --vehicles 100,1000 --measure 5",
                                          "shoal bench land --vehicles 1000 --threads 1,2,4 --csv land.csv",
                                          "shoal bench land --vehicles 100 --print-world > land.yaml"},
-                                        {{0, "success"}, {2, "wrong usage"}, {4, "no memory, or a file error"}},
+                                        {{0, "success"}, {2, "wrong usage"}, {4, "out of memory, or a file error"}},
                                         notes});
   // Action.
   command->callback([arguments, &exit_code] {

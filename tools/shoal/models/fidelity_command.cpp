@@ -72,7 +72,7 @@ int fidelity(const FidelityArguments& arguments) {
     for (const std::string& missed : result.missed) std::cout << result.of.name << ": missed " << missed << '\n';
   if (!arguments.results.empty())
     verification::write_fidelity_report(arguments.results, file.text, results, arguments.csv);
-  // With a missed bar every change would seem to be seen.
+  // If a bound is missed already, every change would seem to be detected.
   if (passed && arguments.mutation) passed = mutate(arguments, file);
   return passed ? exit_ok : exit_failed;
 }
@@ -85,7 +85,7 @@ static void add_fidelity_command(CLI::App& app, int& exit_code) {
   add_log_level_option(*command);
   // Options.
   command->add_option("CASES", arguments->cases, "file of cases")->required();
-  command->add_option("--case", arguments->names, "only this case, or the cases of this group")
+  command->add_option("--case", arguments->names, "run only this case, or the cases of this group")
       ->type_name("NAME")
       ->type_size(1)
       ->allow_extra_args(false);
@@ -99,7 +99,7 @@ static void add_fidelity_command(CLI::App& app, int& exit_code) {
       ->check(command_line::setting());
   command
       ->add_option("--mutate", arguments->mutation,
-                   "then change each coefficient by this share, and name what no case sees")
+                   "then change each coefficient by this fraction, and list the changes that no case detects")
       ->type_name("SHARE")
       ->check(number_from(1e-4, 0.5));
   command
@@ -107,14 +107,14 @@ static void add_fidelity_command(CLI::App& app, int& exit_code) {
           "--results", arguments->results,
           "directory for the report: fidelity.md and plots; with --mutate also fidelity_coefficients.md and its table")
       ->type_name("DIR");
-  command->add_flag("--csv", arguments->csv, "with the report, the states of Shoal as CSV files");
+  command->add_flag("--csv", arguments->csv, "with --output, also write the states of Shoal as CSV files");
   add_plugin_option(*command);
   // End of the help and action.
   command_line::set_help_end(*command,
                              {{"shoal fidelity tests/fidelity/cases.yaml --case otter_turn --results results/otter",
                                "shoal fidelity tests/fidelity/cases.yaml --mutate 0.05"},
-                              {{0, "all cases are within their bounds; with --mutate, each change is seen"},
-                               {1, "a bound of a case was missed, or no case sees a change of --mutate"},
+                              {{0, "all cases are within their bounds; with --mutate, each change is detected"},
+                               {1, "a case exceeds a bound, or no case detects a change of --mutate"},
                                {2, "wrong usage, or a mistake in a file"},
                                {4, "file error"}},
                               {"docs/models/fidelity.md says how to add cases."}});

@@ -121,7 +121,7 @@ void add_urdf_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("urdf", "Convert a robot in URDF into a vehicle file");
   const auto arguments = std::make_shared<ImportArguments>();
   add_log_level_option(*command);
-  command->add_option("FILE", arguments->file, "URDF file; of xacro the expanded one")->required();
+  command->add_option("FILE", arguments->file, "URDF file; expand xacro first")->required();
   command->add_option("--output", arguments->output, "vehicle file to write; mesh files are written into NAME_meshes")
       ->type_name("NAME.yaml")
       ->required();
@@ -141,7 +141,7 @@ void add_urdf_command(CLI::App& app, int& exit_code) {
                    "density of bodies without mass, which get the mass of their shapes, kg/m^3")
       ->type_name("DENSITY")
       ->check(number_from(1e-3, 1e5).description(""));
-  command->add_flag("--fixed-base", arguments->fixed_base, "fix the root link to the world, as of an arm on a table");
+  command->add_flag("--fixed-base", arguments->fixed_base, "fix the root link to the world, such as an arm on a table");
   command->add_flag("--overwrite", arguments->overwrite, "replace an existing file");
   command_line::set_help_end(
       *command,
@@ -149,7 +149,7 @@ void add_urdf_command(CLI::App& app, int& exit_code) {
         "shoal import urdf arm.urdf --output arm.yaml --package arm_description=../arm_description --meshes box",
         "shoal import urdf panda.urdf --output panda.yaml --fixed-base --density 1000"},
        {{0, "the vehicle file was written"}, {2, "wrong usage, or an error in the URDF"}, {4, "file error"}},
-       {"Each part of the URDF that a vehicle file does not hold is one line on stderr, as file:line: text.  "
+       {"Each part of the URDF that a vehicle file cannot express is reported on stderr, as file:line: text.  "
         "docs/guides/import_urdf.md has the details."}});
   command->callback([arguments, &exit_code] { exit_code = import_robot(*arguments); });
 }

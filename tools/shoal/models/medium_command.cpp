@@ -119,6 +119,7 @@ int look(MediumArguments& arguments) {
   const sim::Vector3d p_W = parse_point(arguments.at);
   arguments.load.encode_message = shoal::encode_own_message;
   const sim::WorldConfig config = sim::load_world(experiment::world_file(arguments.world), arguments.load).config;
+  // Without physics: the medium alone takes no time to build, even of a large world.
   sim::Medium medium(config.medium, config.physics.gravity_mps2, static_cast<std::uint64_t>(config.run.seed));
   medium.advance_to(sim::from_seconds(arguments.time_s));
   if (arguments.waves_s)
@@ -145,7 +146,7 @@ static void add_medium_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   CLI::Option* profile =
       command->add_flag("--profile", arguments->profile, "print a vertical profile from the surface to --at");
-  command->add_option("--waves", arguments->waves_s, "height and period of the waves there over this time, s")
+  command->add_option("--waves", arguments->waves_s, "print height and period of the waves at --at over this time, s")
       ->type_name("S")
       ->check(number_from(1, 1e5))
       ->excludes(profile);

@@ -69,14 +69,14 @@ static void add_mesh_command(CLI::App& app, int& exit_code) {
   command->add_option("--out", options->out, "output file, .stl (binary) or .obj")->type_name("FILE");
   command
       ->add_option("--scale", options->import.scale,
-                   "factor from units of the file to meters; Collada's own unit is applied")
+                   "factor from the units of the file to meters; Collada's own unit is applied")
       ->type_name("FACTOR")
       ->check(number_from(1e-9, 1e9))
       ->capture_default_str();
   command
-      ->add_option("--up", options->up,
-                   "axis of the file that points up, y or z; without it y in glTF, what the file says in Collada, z in "
-                   "others")
+      ->add_option(
+          "--up", options->up,
+          "axis of the file that points up, y or z; default: y in glTF, what the file says in Collada, z in others")
       ->type_name("AXIS")
       ->check(one_of({"y", "z"}).description(""));
   command->add_option("--timeout", options->import.timeout_s, "time limit for reading the file, s")

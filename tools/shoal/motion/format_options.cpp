@@ -27,7 +27,7 @@ void add_format_options(CLI::App& command, FormatArguments& arguments) {
           "file of the names of joints in other programs; unset: joint_names/VEHICLE.yaml beside the vehicle file")
       ->type_name("FILE")
       ->needs(command.get_option("--vehicle"));
-  command.add_flag("--keep-names", arguments.keep_names, "do not convert names of joints")
+  command.add_flag("--keep-names", arguments.keep_names, "do not convert joint names")
       ->excludes(command.get_option("--vehicle"));
   command.add_option("--name", arguments.options.name, "name of the motion in the file of the other program")
       ->type_name("NAME");
@@ -41,7 +41,7 @@ void add_format_options(CLI::App& command, FormatArguments& arguments) {
       ->type_name("MS")
       ->check(command_line::number_from(0.1, 10000).description(""))
       ->capture_default_str();
-  command.add_flag("--strict", arguments.strict, "write nothing when something cannot be kept");
+  command.add_flag("--strict", arguments.strict, "write nothing if something would be lost");
   command.add_flag("--overwrite", arguments.overwrite, "replace an existing file");
 }
 

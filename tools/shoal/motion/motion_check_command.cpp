@@ -29,6 +29,7 @@ int check(const CheckArguments& arguments) {
   if (arguments.fixed.empty()) return findings.empty() ? exit_ok : exit_failed;
   sim::JointMotion fixed = motion::mended(motion, vehicle);
   fixed.name = motion::motion_name_of(arguments.fixed);
+  // What cannot be written is refused before anything is.
   check_frames(arguments.fixed, fixed, arguments.overwrite);
   motion::write_motion(arguments.fixed, fixed);
   const std::size_t left = motion::check_motion(fixed, vehicle).size();
@@ -54,7 +55,7 @@ void add_motion_check_command(CLI::App& motion, int& exit_code) {
       {{"shoal motion check vehicles/motions/ers7/wave.yaml",
         "shoal motion check quick.yaml --vehicle ers7 --fix slow.yaml"},
        {{0, "all limits are kept"}, {1, "some are not"}, {2, "wrong usage, or mistakes in a file"}, {4, "file error"}},
-       {"Checked are ranges, limits that depend on another joint, velocities and accelerations of each frame, "
+       {"The check covers ranges, limits that depend on another joint, velocities and accelerations of each frame, "
         "and the seam of a loop."}});
   command->callback([arguments, &exit_code] { exit_code = check(*arguments); });
 }

@@ -10,7 +10,8 @@ namespace tools {
 
 void add_stage_options(CLI::App& command, std::string& world, std::string& vehicle) {
   command.add_option("--world", world, "world with a vehicle that has a motion_player")->type_name("WORLD")->required();
-  command.add_option("--vehicle", vehicle, "its name; needed when several have one")->type_name("NAME");
+  command.add_option("--vehicle", vehicle, "name of the vehicle; required if several have a motion_player")
+      ->type_name("NAME");
 }
 
 sim::JointMotion motion_of(const std::string& path) {
@@ -19,6 +20,7 @@ sim::JointMotion motion_of(const std::string& path) {
   try {
     return sim::load_motion(path);
   } catch (const sim::ConfigError& error) {
+    // Files of other programs are given by mistake; a hint helps more than the errors of a YAML parser.
     const motion::MotionFormat* const format = motion::motion_format_of_file(path, "");
     if (format == nullptr || format->read == nullptr) throw;
     std::vector<std::string> lines = error.lines();

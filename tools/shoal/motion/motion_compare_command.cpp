@@ -63,6 +63,7 @@ void print_joints(const motion::MotionDifference& difference) {
   std::cout << fmt::format("{:<24} {:>10} {:>9} {:>10} {:>10}\n", "joint", "max deg", "at s", "rms deg", "first s");
   int equal = 0;
   for (const motion::JointDifference& joint : difference.joints) {
+    // Equal joints are only counted.
     if (joint.max == 0) {
       ++equal;
       continue;
@@ -136,6 +137,7 @@ int compare(CompareArguments arguments) {
           body.max_m * mm_per_m, body.max_at_s, body.rms_m * mm_per_m, body.end_m * mm_per_m, body.end_at_s);
     }
     if (!arguments.png.empty()) draw(arguments.png, first, second, difference, name_of);
+    // Ends are sums of frames, so they may differ by rounding.
     const bool is_equal = difference.max() <= tolerance && difference.only_first.empty() &&
                           difference.only_second.empty() &&
                           std::abs(difference.first_end_s - difference.second_end_s) <= 1e-9;
@@ -157,17 +159,21 @@ int compare(CompareArguments arguments) {
 }  // namespace
 
 void add_motion_compare_command(CLI::App& motion, int& exit_code) {
-  CLI::App* command = motion.add_subcommand("compare", "Compare two motions joint by joint, and where they lead");
+  CLI::App* command =
+      motion.add_subcommand("compare", "Compare two motions joint by joint, and the paths they produce");
   const auto arguments = std::make_shared<CompareArguments>();
   add_log_level_option(*command, "warn");
   command->add_option("FILE", arguments->first, "motion file")->required();
   command->add_option("OTHER", arguments->second, "other motion file; unset: FILE before its last edit or recording");
-  command->add_option("--tolerance", arguments->tolerance_deg, "difference that counts, degrees; usual 0")
+  command->add_option("--tolerance", arguments->tolerance_deg, "tolerated difference, degrees; default 0")
       ->type_name("DEG")
       ->check(number_from(0, 360));
-  command->add_option("--world", arguments->stage.world, "play both in this world, and compare the way of the vehicle")
+  command
+      ->add_option("--world", arguments->stage.world, "play both in this world, and compare the paths of the vehicle")
       ->type_name("WORLD");
-  command->add_option("--vehicle", arguments->stage.vehicle, "its name; needed when several have a motion_player")
+  command
+      ->add_option("--vehicle", arguments->stage.vehicle,
+                   "name of the vehicle; required if several have a motion_player")
       ->type_name("NAME");
   command->add_option("--png", arguments->png, "plot of the joints that differ, by gnuplot")->type_name("FILE");
   add_set_option(*command, arguments->stage.load.sets);
@@ -179,7 +185,7 @@ void add_motion_compare_command(CLI::App& motion, int& exit_code) {
                                {1, "they differ"},
                                {2, "wrong usage, or mistakes in a file"},
                                {4, "there is no earlier version, or the plot cannot be written"}},
-                              {"Compared are the frames of the first motion, up to the end of the longer one."}});
+                              {"The frames of the first motion are compared, up to the end of the longer one."}});
   command->callback([arguments, &exit_code] { exit_code = compare(*arguments); });
 }
 

@@ -108,7 +108,7 @@ int connect(ConnectArguments arguments) {
   motion::Connector connector(loaded.config, vehicle, from.motion, arguments.options);
   motion::Connection connection = connector.connect(values_at(to.motion, 0));
   for (const std::size_t world : connection.left_out)
-    sim::log_warn("perturbed world {} is left out: '{}' does not stand in it", world, from.name);
+    sim::log_warn("perturbed world {} is skipped: '{}' does not stand in it", world, from.name);
   // Print the worlds, then the result.
   for (std::size_t w = 0; w < connection.straight.size(); ++w)
     std::cout << fmt::format("world {:<3} straight: {}; best: {}\n", w, outcome(connection.straight[w]),
@@ -138,23 +138,26 @@ void add_motion_connect_command(CLI::App& motion, int& exit_code) {
       ->add_option("FROM", arguments->from,
                    "pose or motion of the vehicle by name, FILE:POSE, or a motion file: its end")
       ->required();
-  command->add_option("TO", arguments->to, "the same; of a motion its start")->required();
+  command->add_option("TO", arguments->to, "likewise; of a motion file, its start")->required();
   add_stage_options(*command, arguments->world, arguments->vehicle);
-  command->add_option("--output", arguments->output, "motion file to be written")->type_name("FILE")->required();
+  command->add_option("--output", arguments->output, "motion file to write")->type_name("FILE")->required();
   add_overwrite_option(*command, arguments->overwrite);
-  command->add_option("--worlds", options.worlds, "perturbed worlds, besides the world as it is; usual 4")
+  command
+      ->add_option("--worlds", options.worlds,
+                   "number of perturbed worlds, in addition to the unperturbed one; default 4")
       ->check(whole_from(0, 1000));
   command
       ->add_option("--velocity", options.velocity,
-                   "mean velocity of the joint with the longest way on the straight connection, rad/s; usual 1")
+                   "mean velocity of the joint with the longest way on the straight connection, rad/s; default 1")
       ->check(number_from(0.01, 100));
-  command->add_option("--settle", options.settle_s, "time after a motion in which it may still fall, s; usual 1")
+  command->add_option("--settle", options.settle_s, "time after a motion in which it may still fall, s; default 1")
       ->check(number_from(0, 600));
-  command->add_option("--candidates", options.candidates, "how many motions are searched at most; usual 300")
+  command->add_option("--candidates", options.candidates, "maximum number of motions tried; default 300")
       ->check(whole_from(0, 1000000));
-  command->add_option("--seed", options.seed, "of candidates and perturbed worlds; usual 1")
+  command->add_option("--seed", options.seed, "seed of candidates and perturbed worlds; default 1")
       ->check(command_line::seed());
-  command->add_option("--threads", options.threads, "0: one for each processor; the results are the same")
+  command
+      ->add_option("--threads", options.threads, "number of threads; 0: one per processor; does not change the results")
       ->check(whole_from(0, 256));
   add_set_option(*command, arguments->load.sets);
   add_allow_path_option(*command, arguments->load);

@@ -93,14 +93,16 @@ void add_motion_divergence_command(CLI::App& motion, int& exit_code) {
   add_log_level_option(*command, "warn");
   command->add_option("FILE", arguments->files, "motion files")->required();
   add_stage_options(*command, arguments->world, arguments->vehicle);
-  command->add_option("--duration", arguments->options.duration_s, "time of the repeated motion, s; usual 30")
+  command->add_option("--duration", arguments->options.duration_s, "duration of the repeated motion, s; default 30")
       ->type_name("S")
       ->check(number_from(0.1, 3600));
-  command->add_option("--row", arguments->options.row_s, "time between two rows of the CSV file, s; usual 0.1")
+  command->add_option("--row", arguments->options.row_s, "time between rows of the CSV file, s; default 0.1")
       ->type_name("S")
       ->check(number_from(0.001, 60));
   command->add_option("--csv", arguments->csv, "write the distance to the farthest model by time")->type_name("OUTPUT");
-  command->add_option("--threads", arguments->options.threads, "0: one for each processor; the results are the same")
+  command
+      ->add_option("--threads", arguments->options.threads,
+                   "number of threads; 0: one per processor; does not change the results")
       ->type_name("N")
       ->check(whole_from(0, 256));
   add_set_option(*command, arguments->load.sets);

@@ -95,6 +95,7 @@ int edit(const EditArguments& arguments, const Edit& change) {
   try {
     sim::JointMotion changed = change(arguments, motion);
     std::error_code error;
+    // --output may name the same file by another path, which must get a history, too.
     const bool in_place =
         arguments.output.empty() || std::filesystem::equivalent(arguments.file, arguments.output, error);
     const std::string output = in_place ? arguments.file : arguments.output;
@@ -132,7 +133,7 @@ class EditCommands {
     CLI::App* command = parent_.add_subcommand(name, meaning);
     const auto arguments = std::make_shared<EditArguments>();
     command->add_option("FILE", arguments->file, "motion file")->required();
-    command->add_option("--output", arguments->output, "write this file; unset: FILE itself, after which 'undo' works")
+    command->add_option("--output", arguments->output, "file to write; unset: FILE itself, which 'undo' can restore")
         ->type_name("OUTPUT");
     add_overwrite_option(*command, arguments->overwrite);
     command_line::set_help_end(*command,
@@ -166,8 +167,7 @@ void add_part(const EditCommands::Added& added) {
 
 void add_vehicle(const EditCommands::Added& added) {
   added.command
-      .add_option("--vehicle", added.arguments.vehicle,
-                  "vehicle file that says how it is mirrored; unset: that of the motion")
+      .add_option("--vehicle", added.arguments.vehicle, "vehicle file with the mirror rule; unset: that of the motion")
       ->type_name("FILE");
 }
 
@@ -184,18 +184,18 @@ void add_cuts(EditCommands& commands) {
 
 void add_joining(EditCommands& commands) {
   const auto append = commands.add(
-      "append", "Add another motion behind it", "sit.yaml wave.yaml --gap 0.5",
+      "append", "Append another motion", "sit.yaml wave.yaml --gap 0.5",
       [](const auto& a, const auto& motion) { return motion::appended(motion, motion_of(a.other), a.by); });
   append.arguments.by = 0.5;
-  append.command.add_option("OTHER", append.arguments.other, "motion file that is added")->required();
-  append.command.add_option("--gap", append.arguments.by, "time between both, s; usual 0.5")
+  append.command.add_option("OTHER", append.arguments.other, "motion file to append")->required();
+  append.command.add_option("--gap", append.arguments.by, "pause between the two, s; default 0.5")
       ->type_name("S")
       ->check(time_s);
   const auto merge = commands.add(
       "merge", "Add the joints of another motion", "legs.yaml head.yaml",
       [](const auto& a, const auto& motion) { return motion::merged(motion, motion_of(a.other), a.replace); });
   merge.command.add_option("OTHER", merge.arguments.other, "motion file whose joints are added")->required();
-  merge.command.add_flag("--replace", merge.arguments.replace, "joints of both are those of OTHER");
+  merge.command.add_flag("--replace", merge.arguments.replace, "take joints that both files have from OTHER");
 }
 
 void add_mirrors(EditCommands& commands) {
@@ -203,7 +203,7 @@ void add_mirrors(EditCommands& commands) {
       commands.add("mirror", "Exchange left and right", "kick_left.yaml --output kick_right.yaml",
                    [](const auto& a, const auto& motion) { return motion::mirrored(motion, rule_for(a, motion)); }));
   add_vehicle(commands.add(
-      "halfcycle", "Add the mirrored motion: half a cycle becomes a whole one", "step.yaml --output walk.yaml",
+      "halfcycle", "Append the mirrored motion: half a cycle becomes a whole one", "step.yaml --output walk.yaml",
       [](const auto& a, const auto& motion) { return motion::with_mirrored_half(motion, rule_for(a, motion)); }));
 }
 
@@ -217,9 +217,9 @@ void add_times(EditCommands& commands) {
       ->required();
   command_line::add_name_list(shift.command, "--joints", shift.arguments.joints, "joints; unset: all")
       ->type_name("JOINT,...");
-  const auto scale = commands.add("scale", "Make it slower or faster", "wave.yaml --by 2",
+  const auto scale = commands.add("scale", "Make a motion slower or faster", "wave.yaml --by 2",
                                   [](const auto& a, const auto& motion) { return motion::stretched(motion, a.by); });
-  scale.command.add_option("--by", scale.arguments.by, "factor of all times; 2: half as fast")
+  scale.command.add_option("--by", scale.arguments.by, "factor by which all times are multiplied; 2: half as fast")
       ->type_name("FACTOR")
       ->check(number_from(1e-6, 1e6))
       ->required();
@@ -247,7 +247,7 @@ void add_values(EditCommands& commands) {
       commands.add("simplify", "Leave out keys", "recorded.yaml --tolerance 0.25",
                    [](const auto& a, const auto& motion) { return motion::simplified(motion, a.by * rad_per_deg); });
   simplify.arguments.by = 0.25;
-  simplify.command.add_option("--tolerance", simplify.arguments.by, "greatest change of a value, deg; usual 0.25")
+  simplify.command.add_option("--tolerance", simplify.arguments.by, "largest change of a value, deg; default 0.25")
       ->type_name("DEG")
       ->check(number_from(0, 360));
   const auto set = commands.add("set", "Set values of joints", "wave.yaml --at 0.5 lf_knee=40 rf_knee=40",
@@ -261,13 +261,13 @@ void add_values(EditCommands& commands) {
   set.command.add_option("--vehicle", set.arguments.vehicle, "vehicle file with the joints; unset: that of the motion")
       ->type_name("FILE");
   const auto pose =
-      commands.add("pose", "Name the values at a time as a pose", "wave.yaml --at 1 --name stand",
+      commands.add("pose", "Store the values at a time as a named pose", "wave.yaml --at 1 --name stand",
                    [](const auto& a, const auto& motion) { return motion::with_pose(motion, a.name, a.at_s); });
   pose.command.add_option("--at", pose.arguments.at_s, "time, s")->type_name("S")->check(time_s)->required();
   pose.command.add_option("--name", pose.arguments.name, "name of the pose")->type_name("NAME")->required();
 }
 
-/// Returns what a file has, also when it is not a good motion file.
+/// Returns what a file has, even when it is not a good motion file.
 std::string present_content(const std::string& file) {
   try {
     return content_text(sim::load_motion(file));
@@ -313,9 +313,8 @@ void add_motion_edit_command(CLI::App& motion, int& exit_code) {
   add_mirrors(commands);
   add_times(commands);
   add_values(commands);
-  add_history(*command, exit_code, "undo", "Take back the last edit", "took back", &motion::MotionHistory::undo);
-  add_history(*command, exit_code, "redo", "Do an edit again that was taken back", "did again",
-              &motion::MotionHistory::redo);
+  add_history(*command, exit_code, "undo", "Undo the last edit", "took back", &motion::MotionHistory::undo);
+  add_history(*command, exit_code, "redo", "Redo an edit that was undone", "did again", &motion::MotionHistory::redo);
   command_line::set_help_end(*command, {{"shoal motion edit trim wave.yaml --from 0.5 --to 2",
                                          "shoal motion edit mirror kick_left.yaml --output kick_right.yaml",
                                          "shoal motion edit undo wave.yaml"},

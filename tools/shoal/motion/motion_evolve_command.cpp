@@ -36,7 +36,7 @@ struct EvolveArguments {
   bool overwrite = false;
 };
 
-/// Returns in which worlds a value holds.
+/// Returns a phrase for the worlds in which a value holds.
 std::string in_worlds(std::size_t count) {
   return count == 1 ? "in one world" : fmt::format("in the worst of {} worlds", count);
 }
@@ -167,6 +167,7 @@ int evolve(EvolveArguments arguments) {
   motion::Evolution evolution(loaded.config, vehicle, *gait, arguments.options);
   sim::log_info("start of the search: {:.1f} mm/s {}", evolution.start().value_mps * mm,
                 in_worlds(evolution.perturbations().size()));
+  // The best so far is always in the file: the search takes hours, and may be ended at any time.
   write_best(arguments, *gait, evolution);
   const double start_mps = evolution.start().value_mps;
   std::vector<motion::EvolveGeneration> generations{{0, start_mps, start_mps}};
@@ -193,36 +194,39 @@ void add_motion_evolve_command(CLI::App& motion, int& exit_code) {
   motion::EvolveOptions& options = arguments->options;
   add_log_level_option(*command);
   add_stage_options(*command, arguments->world, arguments->vehicle);
-  command->add_option("--gait", arguments->gait, "gait family; usual half_ellipse")
+  command->add_option("--gait", arguments->gait, "gait family; default half_ellipse")
       ->type_name("NAME")
       ->check(one_of(gait_choices()));
   command
       ->add_option("--motion", arguments->motion, "motion file that loops, whose keys are searched: --gait free_keys")
       ->type_name("FILE");
-  command->add_option("--output", arguments->output, "motion file to be written, also after each better candidate")
+  command->add_option("--output", arguments->output, "motion file to write, updated with each better candidate")
       ->type_name("FILE")
       ->required();
   command->add_option("--page", arguments->page, "HTML page with the curve of the search and its result")
       ->type_name("FILE");
   add_overwrite_option(*command, arguments->overwrite);
-  command->add_option("--candidates", options.candidates, "how many gaits are tried; usual 500")
+  command->add_option("--candidates", options.candidates, "number of gaits tried; default 500")
       ->check(whole_from(1, 1000000));
-  command->add_option("--population", options.population, "candidates of a generation; usual 16")
+  command->add_option("--population", options.population, "candidates per generation; default 16")
       ->check(whole_from(4, 1000));
-  command->add_option("--method", arguments->method, "of the search; usual cma_es")
+  command->add_option("--method", arguments->method, "search algorithm; default cma_es")
       ->type_name("NAME")
       ->check(one_of({"cma_es", "genetic"}));
-  command->add_option("--sigma", options.sigma, "first step as a share of each range; usual 0.3")
+  command->add_option("--sigma", options.sigma, "initial step size as a fraction of each range; default 0.3")
       ->check(number_from(0.001, 1));
-  command->add_option("--worlds", options.worlds, "perturbed worlds; 0: only the world as it is; usual 8")
+  command->add_option("--worlds", options.worlds, "number of perturbed worlds; 0: only the world as it is; default 8")
       ->check(whole_from(0, 1000));
-  command->add_option("--fresh", arguments->fresh, "other perturbed worlds for the best one at the end; usual 20")
+  command
+      ->add_option("--fresh", arguments->fresh,
+                   "number of further perturbed worlds in which the best gait is tested at the end; default 20")
       ->check(whole_from(0, 1000));
-  command->add_option("--measure", options.walk.measured_s, "measured time of a walk, s; usual 4")
+  command->add_option("--measure", options.walk.measured_s, "measured time of a walk, s; default 4")
       ->check(number_from(0.1, 600));
-  command->add_option("--seed", options.seed, "of candidates and perturbed worlds; usual 1")
+  command->add_option("--seed", options.seed, "seed of candidates and perturbed worlds; default 1")
       ->check(command_line::seed());
-  command->add_option("--threads", options.threads, "0: one for each processor; the results are the same")
+  command
+      ->add_option("--threads", options.threads, "number of threads; 0: one per processor; does not change the results")
       ->check(whole_from(0, 256));
   add_set_option(*command, arguments->load.sets);
   add_allow_path_option(*command, arguments->load);

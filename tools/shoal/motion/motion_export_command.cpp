@@ -93,7 +93,7 @@ void add_motion_export_command(CLI::App& motion, int& exit_code) {
                                          "shoal motion export wave.yaml --vehicle ers7 --output wave.mot --strict",
                                          "shoal motion export wave.yaml --format openr --output wave_object"},
                                         {{0, "success"},
-                                         {1, "a part of the motion cannot be kept, with --strict"},
+                                         {1, "with --strict: part of the motion cannot be kept"},
                                          {2, "wrong usage, or the format cannot hold the motion"},
                                          {4, "file error"}},
                                         {formats_text(false),

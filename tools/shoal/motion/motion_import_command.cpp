@@ -88,6 +88,7 @@ int import_motion(FormatArguments& arguments) {
   if (!may_lose(arguments, losses)) return exit_failed;
   if (!motion.frames.empty())
     motion.frames_file = fs::path(arguments.output).replace_extension(".csv").filename().string();
+  // The file is read again as text before it is written: a motion that Shoal itself refuses must not be left behind.
   try {
     motion::check_readable(arguments.output, motion);
   } catch (const motion::EditError& error) {
@@ -96,7 +97,7 @@ int import_motion(FormatArguments& arguments) {
   if (!motion.frames.empty()) write_frames(arguments, motion.frames);
   write_bytes(arguments.output, sim::motion_text(motion));
   if (motion.vehicle.empty() && !arguments.keep_names)
-    std::cerr << arguments.output << ": names no vehicle, and joints are called as in " << arguments.input
+    std::cerr << arguments.output << ": names no vehicle, and its joints have the names in " << arguments.input
               << "; --vehicle VEHICLE converts them\n";
   fmt::print("{}: motion '{}' from {}, {} joints, {} s\n", arguments.output, motion.name, format.meaning,
              motion.tracks().size(), sim::number_text(motion.end_s()));
@@ -111,17 +112,17 @@ void add_motion_import_command(CLI::App& motion, int& exit_code) {
   add_log_level_option(*command);
   command->add_option("FILE", arguments->input, "file of the other program")->required();
   add_format_options(*command, *arguments);
-  command->get_option("--name")->description("play_motion2, opencat: motion that is read, of several in the file");
+  command->get_option("--name")->description("play_motion2, opencat: which of several motions in the file to read");
   command_line::set_help_end(
       *command, {{"shoal motion import wave.mtn --vehicle ers7 --output wave.yaml",
                   "shoal motion import walk.yaml --format ros --output walk_motion.yaml",
                   "shoal motion import skills.h --format opencat --name hi --vehicle bittle --output hi.yaml"},
                  {{0, "success"},
-                  {1, "a part of the file cannot be kept, with --strict"},
+                  {1, "with --strict: part of the file cannot be kept"},
                   {2, "wrong usage, or an error in the file"},
                   {4, "file error"}},
                  {formats_text(true),
-                  "Errors are printed as file:line:column: rule, value; of binary files with the number of the byte.  "
+                  "Errors are printed as file:line:column: rule, value; in binary files with the byte number.   "
                   "What the motion "
                   "does not keep of the file is printed, each on its own line.  docs/guides/motion_formats.md "
                   "describes the formats."}});

@@ -34,7 +34,7 @@ struct PlayArguments {
   bool is_part() const { return stage.play.from_s || stage.play.to_s; }
 };
 
-/// Prints whether the state at the end is that of the recording; returns false when it should be and is not.
+/// Prints whether the final state equals that of the recording; returns false when it should be and is not.
 bool report_recording(const sim::MotionOrigin& origin, std::uint64_t hash, const motion::StageOptions& stage,
                       const std::string& world) {
   if (origin.world != world) {
@@ -48,8 +48,8 @@ bool report_recording(const sim::MotionOrigin& origin, std::uint64_t hash, const
     for (const std::string& set : origin.set) sets += " --set '" + sim::printable(set) + "'";
     std::cout << "it was recorded " << (sets.empty() ? "without --set" : "with" + sets) << '\n';
   }
-  std::cout << (is_same ? "the state at the end is that of the recording\n"
-                        : "the state at the end is another one than that of the recording\n");
+  std::cout << (is_same ? "the final state equals that of the recording\n"
+                        : "the final state differs from that of the recording\n");
   return is_same;
 }
 
@@ -72,7 +72,7 @@ std::string phase_text(const motion::MotionStage& stage) {
 void choose_world(motion::StageOptions& stage, const sim::JointMotion& motion, const std::string& file) {
   if (stage.world.empty()) {
     if (!motion::use_embedded_world(stage, motion, file))
-      throw command_line::UsageError("needs --world: '" + file + "' holds no world (motion record --embed)");
+      throw command_line::UsageError("needs --world: '" + file + "' contains no world (motion record --embed)");
     std::cout << "world: the one embedded in " << file << '\n';
     return;
   }
@@ -111,7 +111,7 @@ bool play_again(motion::MotionStage& stage, const PlayArguments& arguments) {
   stage.go_to(end_s);
   const bool is_equal = stage.state_hash() == hash;
   std::cout << fmt::format("again from {:.3f} s: {}\n", from_s,
-                           is_equal ? "the same state at the end" : "another state at the end");
+                           is_equal ? "the same final state" : "a different final state");
   return is_equal;
 }
 
@@ -176,7 +176,7 @@ int play(PlayArguments arguments) {
   // Report.
   std::cout << tracking.text(motion);
   if (is_cut) {
-    std::cout << fmt::format("ended after {:.3f} s: while it settled\n", stage.now_s());
+    std::cout << fmt::format("ended after {:.3f} s, while it settled\n", stage.now_s());
     return 128 + experiment::caught_signal();
   }
   std::cout << fmt::format("{:.3f} s simulated, state hash at the end of the motion {:016x}\n", played_s, end_hash);
@@ -191,7 +191,7 @@ int play(PlayArguments arguments) {
 }  // namespace
 
 void add_motion_play_command(CLI::App& motion, int& exit_code) {
-  CLI::App* command = motion.add_subcommand("play", "Play a motion in a world, and say how the joints follow");
+  CLI::App* command = motion.add_subcommand("play", "Play a motion in a world, and report how well the joints follow");
   const auto arguments = std::make_shared<PlayArguments>();
   add_log_level_option(*command, "warn");
   command->add_option("FILE", arguments->file, "motion file")->required();
@@ -204,20 +204,20 @@ void add_motion_play_command(CLI::App& motion, int& exit_code) {
   command->add_option("--to", arguments->stage.play.to_s, "end of this part, s")
       ->type_name("S")
       ->check(number_from(0, sim::max_motion_s));
-  command->add_flag("--loop", arguments->loop, "play it again and again, for --loop-time, or until Ctrl-C with --view");
-  command->add_option("--settle", arguments->settle_s, "simulated time after the motion, s; usual 1")
+  command->add_flag("--loop", arguments->loop, "repeat it for --loop-time, or with --view until Ctrl-C");
+  command->add_option("--settle", arguments->settle_s, "simulated time after the motion, s; default 1")
       ->type_name("S")
       ->check(number_from(0, 600));
   command
       ->add_option("--loop-time", arguments->loop_s,
-                   "simulated time in all of a motion that loops, s; usual 10, with --view without end")
+                   "total simulated time of a motion that loops, s; default 10, unlimited with --view")
       ->type_name("S")
       ->check(number_from(0.01, sim::max_motion_s));
-  CLI::Option* page = command->add_flag("--view", arguments->with_page,
-                                        "play it on a live page in 3-D, whose address is printed, when it is open");
+  CLI::Option* page = command->add_flag(
+      "--view", arguments->with_page, "play it on a live 3-D page as soon as the page is open; its address is printed");
   command
       ->add_option("--rate", arguments->rate,
-                   "with --view: simulated seconds in a second of the clock; below 1: slow motion; usual 1")
+                   "with --view: simulated seconds per wall second; below 1: slow motion; default 1")
       ->type_name("R")
       ->check(number_from(0.01, 10))
       ->needs(page);
@@ -239,7 +239,7 @@ void add_motion_play_command(CLI::App& motion, int& exit_code) {
                   {1, "the vehicle has fallen, or the state is not that of the recording or of --again-from"},
                   {2, "wrong usage or configuration"},
                   {129, "ended by a signal, with --view; 130 and 143 the same"}},
-                 {"Pages pause the motion, step it, set its pace and go back in it, by 60 s at most."}});
+                 {"The page can pause and step the motion, set its pace, and rewind it by up to 60 s."}});
   command->callback([arguments, &exit_code] { exit_code = play(*arguments); });
 }
 

@@ -220,7 +220,9 @@ void add_motion_record_command(CLI::App& motion, int& exit_code) {
   command->add_option("FILE", arguments->file, "motion file")->required();
   command->add_option("--world", arguments->stage.world, "world with a vehicle that has a motion_player")
       ->type_name("WORLD");
-  command->add_option("--vehicle", arguments->stage.vehicle, "its name; needed when several have one")
+  command
+      ->add_option("--vehicle", arguments->stage.vehicle,
+                   "name of the vehicle; required if several have a motion_player")
       ->type_name("NAME");
   // Inputs.
   CLI::Option* input =
@@ -230,19 +232,17 @@ void add_motion_record_command(CLI::App& motion, int& exit_code) {
           ->type_name("DEVICE")
           ->type_size(1)
           ->allow_extra_args(false);
-  command->add_option("--events", arguments->events, "record what a file of the events of a device does, at full speed")
+  command->add_option("--events", arguments->events, "record the events in a file of device events, at full speed")
       ->type_name("FILE")
       ->excludes(input);
   command->add_option("--on", arguments->actions, "key that executes an action of the world; may be repeated")
       ->type_name("KEY=ACTION")
       ->type_size(1)
       ->allow_extra_args(false);
-  command
-      ->add_option("--rate", arguments->rate,
-                   "simulated seconds in a second of the clock; below 1: slow motion; usual 1")
+  command->add_option("--rate", arguments->rate, "simulated seconds per wall second; below 1: slow motion; default 1")
       ->type_name("R")
       ->check(number_from(0.01, 10));
-  // What is recorded.
+  // Options that select what is recorded.
   command_line::add_name_list(*command, "--overdub", arguments->overdub,
                               "joints that are recorded while the others play the file; comma separated")
       ->type_name("JOINTS");
@@ -263,9 +263,10 @@ void add_motion_record_command(CLI::App& motion, int& exit_code) {
       ->check(number_from(0.01, sim::max_motion_s));
   command->add_flag("--overwrite", arguments->overwrite,
                     "replace existing files; `shoal motion edit undo` brings FILE back");
-  CLI::Option* embed = command->add_flag("--embed", arguments->embed,
-                                         "keep the world in FILE_take.yaml, so that it can be played without the file");
-  command->add_flag("--recover", arguments->recover, "only save a recording that was cut off")->excludes(embed);
+  CLI::Option* embed =
+      command->add_flag("--embed", arguments->embed,
+                        "embed the world in FILE_take.yaml, so that it can be played without the world file");
+  command->add_flag("--recover", arguments->recover, "only save an interrupted recording")->excludes(embed);
   CLI::Option* page = command->add_flag("--view", arguments->with_page,
                                         "serve a live page of the recording in 3-D, and print its address");
   add_open_option(*command, arguments->open)->needs(page);

@@ -23,7 +23,7 @@ struct StabilityArguments {
   double every_s = 0, marginal_mps = 0.1, stable_mps = 0.4;
 };
 
-/// Class of a motion by the greatest impulse over mass that it withstands everywhere.
+/// Class of a motion by the largest impulse per mass that it withstands everywhere.
 const char* class_of(double withstood_mps, const StabilityArguments& arguments) {
   if (withstood_mps >= arguments.stable_mps) return "stable";
   return withstood_mps >= arguments.marginal_mps ? "marginal" : "unstable";
@@ -42,7 +42,7 @@ struct PlayedMotion {
   double start_s = 0;
   std::vector<double> instants_s;  ///< of the run, at which it is pushed: each key, or whole multiples of a period
 
-  /// Returns the least margins from a time of the run until another one.
+  /// Returns the smallest margins from a time of the run until another one.
   Margins min_margins(double from_s, double until_s) const {
     Margins min{from_s, none, none, none};
     for (const Margins& one : course)
@@ -70,7 +70,7 @@ PlayedMotion played_once(const StabilityArguments& arguments, const std::string&
     stage.go_to(stage.now_s() + sim::to_seconds(stage.world().step_time()));
   played.start_s = stage.time_of(0);
   const double rate = stage.player().rate();
-  // Of a motion that loops, the first round.
+  // The first round of a motion that loops.
   if (!stage.play_out(0, motion.loop ? played.start_s + motion.end_s() / rate : max_s) && !motion.loop)
     throw sim::ConfigError({fmt::format("{}: the motion has not ended after {:.0f} s of the run", file, max_s)});
   stage.after_step = {};
@@ -98,7 +98,7 @@ int print_table(const StabilityArguments& arguments, const sim::JointMotion& mot
     const double until_s = i + 1 < margins.size() ? margins[i + 1].at_s : margins[i].at_s + 0.008;
     const Margins min = played.min_margins(margins[i].at_s, until_s);
     least_Ns = std::min(least_Ns, margins[i].least_Ns());
-    // Where even the greatest push is withstood, no direction is the worst.
+    // Where even the largest push is withstood, no direction is the worst.
     const bool beyond = margins[i].least_Ns() >= margins[i].mass_kg * arguments.push.greatest_mps;
     const std::string push = fmt::format("{}{:.3f}", beyond ? ">" : "", margins[i].least_Ns());
     std::cout << fmt::format("{:>8.3f} {:>9.1f} {:>9.1f} {:>10.1f} {:>10} {:>10} {:>9.1f}\n",
@@ -170,6 +170,7 @@ int stability(StabilityArguments arguments) {
   for (const std::string& file : arguments.files) {
     motions.push_back(motion_of(file));
     const bool has_frames = !motions.back().frames.empty();
+    // Frames are too many for a row each, and without keys there are no times.
     if ((motions.back().keys.empty() || has_frames) && arguments.every_s <= 0)
       throw command_line::UsageError(file + ": the motion has " + (has_frames ? "frames" : "no keys") +
                                      ": give the times with --every");
@@ -189,26 +190,28 @@ void add_motion_stability_command(CLI::App& motion, int& exit_code) {
   command->add_option("--every", arguments->every_s, "time between two rows, s; unset: a row for each key")
       ->type_name("S")
       ->check(number_from(0.001, 3600));
-  command->add_option("--directions", arguments->push.directions, "of the pushes; usual 8")
+  command->add_option("--directions", arguments->push.directions, "number of push directions; default 8")
       ->type_name("N")
       ->check(whole_from(1, 64));
-  command->add_option("--watch", arguments->push.watch_s, "time after a push in which it may fall, s; usual 2")
+  command->add_option("--watch", arguments->push.watch_s, "time after a push in which it may fall, s; default 2")
       ->type_name("S")
       ->check(number_from(0.01, 60));
-  command->add_option("--greatest", arguments->push.greatest_mps, "greatest impulse over the mass, m/s; usual 6")
+  command->add_option("--greatest", arguments->push.greatest_mps, "largest impulse per mass, m/s; default 6")
       ->type_name("MPS")
       ->check(number_from(0.02, 100));
   command
       ->add_option("--stable", arguments->stable_mps,
-                   "impulse over the mass that a stable motion withstands everywhere, m/s; usual 0.4")
+                   "impulse per mass that a stable motion withstands everywhere, m/s; default 0.4")
       ->type_name("MPS")
       ->check(number_from(0.02, 100));
   command
       ->add_option("--marginal", arguments->marginal_mps,
-                   "the same of a marginal one; below it is unstable, m/s; usual 0.1")
+                   "the same for a marginal motion; below it a motion is unstable, m/s; default 0.1")
       ->type_name("MPS")
       ->check(number_from(0.02, 100));
-  command->add_option("--threads", arguments->push.threads, "0: one for each processor; the results are the same")
+  command
+      ->add_option("--threads", arguments->push.threads,
+                   "number of threads; 0: one per processor; does not change the results")
       ->type_name("N")
       ->check(whole_from(0, 256));
   add_set_option(*command, arguments->stage.load.sets);
@@ -218,12 +221,15 @@ void add_motion_stability_command(CLI::App& motion, int& exit_code) {
       {{"shoal motion stability vehicles/motions/ers7/wave.yaml --world ers7_studio",
         "shoal motion stability vehicles/motions/ers7/*.yaml --world ers7_studio",
         "shoal motion stability walk.yaml --world ers7_studio --every 0.1 --directions 4 --watch 1"},
-       {{0, "it stands"}, {1, "one falls by itself"}, {2, "wrong usage or configuration; one cannot be played"}},
-       {"Copies of the world are pushed at each row, and the motion continues: it has fallen when it tilts by "
+       {{0, "it stands"},
+        {1, "a vehicle falls without a push"},
+        {2, "wrong usage or configuration; one cannot be played"}},
+       {"The vehicle is pushed in copies of the world at each row, and the motion continues: it has fallen when it "
+        "tilts by "
         "more than 45 degrees or its first body touches the ground.",
         "Class: stable, marginal or unstable, by the weakest push that makes it fall at any row in any direction.  "
         "Lines of several motions have rows that are half a second or more apart, and pushes up to three times "
-        "--stable.  The usual thresholds are meant for the ERS-7: docs/guides/motions.md gives the reasons."}});
+        "--stable.  The default thresholds are meant for the ERS-7: docs/guides/motions.md gives the reasons."}});
   command->callback([arguments, &exit_code] { exit_code = stability(*arguments); });
 }
 

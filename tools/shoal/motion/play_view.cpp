@@ -27,6 +27,7 @@ bool PlayView::goes_on() {
         return viewer::RunView::Answer{false, error.what()};
       }
     });
+    // The motion waits for the first page, so that its beginning is seen.
     has_page_ = has_page_ || page_.clients() > 0;
     auto wait = max_wait;
     if (has_page_ && control.may_step()) {
@@ -37,6 +38,7 @@ bool PlayView::goes_on() {
       control.step_taken();
       return true;
     }
+    // Short waits, since the page is served in this thread.
     std::this_thread::sleep_for(std::min(wait, max_wait));
   }
   return false;

@@ -34,12 +34,14 @@ void RecordLine::show(motion::MotionRecorder& recorder, const motion::JointComma
                       const std::vector<double>& velocities, bool is_paused) {
   const auto now = std::chrono::steady_clock::now();
   if (!is_shown_ || now < next_) return;
+  // Ten times a second: more would only cost time on a slow terminal.
   next_ = now + std::chrono::milliseconds(100);
   std::string line = fmt::format("{:8.2f} s  {}  ", recorder.now_s(),
                                  is_paused                 ? "paused   "
                                  : recorder.is_recording() ? "recording"
                                                            : "playing  ");
   const std::optional<experiment::Support> support = recorder.stage().support();
+  // Colors are added after the line is cut, since they take no columns.
   const std::size_t margin_at = line.size();
   const std::string margin = margin_text(support);
   line += margin;

@@ -41,6 +41,7 @@ RecordSession::RecordSession(const RecordArguments& arguments, motion::MotionRec
       line_(is_live_, !arguments.devices.empty(), std::filesystem::path(arguments.file).filename().string()),
       pace_(clock_time(recorder.frame_s() / arguments.rate.value_or(1)),
             clock_time(sim::to_seconds(recorder.stage().world().step_time()) / arguments.rate.value_or(1))) {
+  // A key of --on must not also move a joint.
   for (const BoundAction& one : actions_)
     if (commands_.uses(one.key)) throw command_line::UsageError("--on: key '" + one.key + "' has another effect");
   if (!is_live_) inputs_.push_back(std::make_unique<motion::EventFileInput>(arguments.events));
@@ -68,6 +69,7 @@ int RecordSession::run() {
   for (std::int64_t tick = 0; experiment::caught_signal() == 0 && !is_over(); ++tick) {
     bool goes_on = true;
     try {
+      // Events of a file come at the times of frames, so that a recording from a file is the same on every machine.
       const auto until_us = static_cast<std::int64_t>(std::llround(static_cast<double>(tick) * period_s * 1e6));
       for (const auto& input : inputs_) goes_on = input->read(until_us, commands_) && goes_on;
     } catch (const experiment::DriveError& error) {

@@ -34,6 +34,7 @@ motion::JointNames joint_names_of(const std::string& vehicle_file, const std::st
     const auto joint = std::find_if(vehicle.joints.begin(), vehicle.joints.end(),
                                     [&](const sim::JointConfig& one) { return one.name == servo.params->joint; });
     const sim::JointConfig* const found = joint == vehicle.joints.end() ? nullptr : &*joint;
+    // Joints that a motion leaves out rest at their park positions.
     joints.push_back({servo.device, servo.params->alias, std::clamp(servo.params->park_position, servo.low, servo.high),
                       found != nullptr && !sim::joint_info(found->type).turns});
   }

@@ -20,7 +20,7 @@ void add_plugin_option(CLI::App& command) {
   const auto load_all = [](const std::vector<std::string>& files) {
     for (const std::string& file : files) load(file);
   };
-  command.add_option_function<std::vector<std::string>>("--plugin", load_all, "library with further devices")
+  command.add_option_function<std::vector<std::string>>("--plugin", load_all, "plugin library with additional devices")
       ->type_name("FILE")
       ->type_size(1)
       ->allow_extra_args(false);

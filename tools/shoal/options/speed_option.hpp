@@ -6,7 +6,7 @@
 
 namespace tools {
 
-/// Parses the value of --speed: `max` (0) or a multiple of real time; nothing when it is empty.  Throws
+/// Parses the value of --speed: `max` (0) or a multiple of real time; std::nullopt if it is empty.  Throws
 /// CLI::ValidationError.
 std::optional<double> parse_speed(const std::string& text);
 

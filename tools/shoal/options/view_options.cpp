@@ -7,16 +7,16 @@ namespace tools {
 
 void add_page_options(CLI::App& command, experiment::ViewOptions& view) {
   command
-      .add_option("--view-port", view.port, "port of the live page; the next free one if it is taken; 0: any free one")
+      .add_option("--view-port", view.port, "port of the live page; if it is taken, the next free one; 0: any free one")
       ->type_name("PORT")
       ->check(command_line::whole_from(0, 65535))
       ->capture_default_str();
   command
       .add_option("--view-host", view.host,
-                  "address at which the live page listens; others than local ones require the token for reading, too")
+                  "address at which the live page listens; non-local addresses require the token for reading too")
       ->type_name("ADDRESS")
       ->capture_default_str();
-  command.add_option("--view-origin", view.origins, "further web site whose pages may connect")
+  command.add_option("--view-origin", view.origins, "additional web site whose pages may connect")
       ->type_name("URL")
       ->type_size(1)
       ->allow_extra_args(false);

@@ -15,13 +15,14 @@ namespace {
 
 int pack(const experiment::BugOptions& options) {
   try {
+    // Checked first: packing a long record takes minutes.
     if (!options.out.empty()) check_writable(options.out);
     const experiment::BugReport report = experiment::write_bug_report(options);
     std::cout << report.path << '\n';
     for (const std::string& line : report.inside) std::cout << "  " << line << '\n';
     if (!report.left_out.empty()) std::cout << "left out:\n";
     for (const std::string& line : report.left_out) std::cout << "  " << line << '\n';
-    std::cerr << "Paths and commands of this machine are in it: look into it before you send it.\n";
+    std::cerr << "It contains paths and commands of this machine: review it before you send it.\n";
   } catch (const std::runtime_error& error) {
     std::cerr << "shoal: " << error.what() << '\n';
     return exit_bus;
@@ -48,7 +49,8 @@ static void add_bug_command(CLI::App& app, int& exit_code) {
       ->check(whole_from(1, 4096))
       ->capture_default_str();
   command->add_flag_callback(
-      "--no-files", [options] { options->files = false; }, "store hashes of the files that the world names, no copies");
+      "--no-files", [options] { options->files = false; },
+      "store only hashes, not copies, of the files that the world names");
   command->add_option("--out", options->out, "the archive; unset: RUN/bug.tar.gz")->type_name("FILE");
   // End of the help and action.
   command_line::set_help_end(

@@ -99,6 +99,7 @@ std::string csv_value(const shoal::FieldValue& value) {
     for (const std::byte b : *bytes) hex += fmt::format("{:02x}", static_cast<unsigned>(b));
     return hex;
   }
+  // Texts are always quoted, as commas and quotes may be part of them (RFC 4180).
   std::string quoted = "\"";
   for (const char c : std::get<std::string_view>(value)) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
   return quoted + "\"";
@@ -197,7 +198,7 @@ void add_common(CLI::App& command, LogArguments& arguments) {
 }
 
 void add_info_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("info", "Channels, rates, types, and the run that wrote the log");
+  CLI::App* command = app.add_subcommand("info", "List channels, rates and types, and the run that wrote the log");
   const auto arguments = std::make_shared<LogArguments>();
   add_common(*command, *arguments);
   add_types_option(*command, arguments->lcm_files);
@@ -208,7 +209,7 @@ void add_info_command(CLI::App& app, int& exit_code) {
 }
 
 void add_csv_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("csv", "The messages of one channel as CSV on stdout");
+  CLI::App* command = app.add_subcommand("csv", "Print the messages of one channel as CSV");
   const auto arguments = std::make_shared<LogArguments>();
   add_common(*command, *arguments);
   command->add_option("CHANNEL", arguments->channel, "such as rover1.odometry")->required();
@@ -222,7 +223,7 @@ void add_csv_command(CLI::App& app, int& exit_code) {
 
 void add_allan_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "allan", "Allan deviation of each double array of one channel, from an instrument at rest, or of a clock");
+      "allan", "Compute the Allan deviation of each double array of one channel, of an instrument at rest or a clock");
   const auto arguments = std::make_shared<LogArguments>();
   add_common(*command, *arguments);
   command->add_option("CHANNEL", arguments->channel, "such as rover1.imu")->required();
@@ -251,13 +252,11 @@ void add_image_command(CLI::App& app, int& exit_code) {
   at->type_name("S")->check(number_from(0, 1e9).description(""));
   number->type_name("N")->check(whole_from(0, std::numeric_limits<int>::max()).description(""))->excludes(at);
   add_plugin_option(*command);
-  command_line::set_help_end(
-      *command,
-      {{"shoal log image run.lcm auv1.side_scan --png side_scan.png",
-        "shoal log image run.lcm rover1.camera --at 12.5 --png seen.png"},
-       log_codes,
-       {"Side scans and multibeam pings are drawn all in one; of other sensors one message is drawn.  All but "
-        "images of cameras need gnuplot."}});
+  command_line::set_help_end(*command, {{"shoal log image run.lcm auv1.side_scan --png side_scan.png",
+                                         "shoal log image run.lcm rover1.camera --at 12.5 --png seen.png"},
+                                        log_codes,
+                                        {"All side scans or multibeam pings are drawn in one image; of other sensors "
+                                         "one message is drawn.  All except camera images need gnuplot."}});
   command->callback([arguments, &exit_code] { exit_code = image(*arguments); });
 }
 

@@ -31,6 +31,7 @@ constexpr std::size_t max_lines = 60;
 
 int run(ReplayArguments& arguments) {
   if (!arguments.replay.world.empty()) arguments.replay.world = experiment::world_file(arguments.replay.world);
+  // Checked before the replay, which may take hours.
   if (!arguments.report.empty()) check_writable(arguments.report);
   experiment::catch_signals(true);
   const experiment::ReplayOutcome outcome = experiment::replay(arguments.replay);
@@ -85,7 +86,7 @@ void add_player_options(CLI::App& command, ReplayArguments& arguments) {
               ->type_name("FACTOR")
               ->capture_default_str());
   of_play(add_lcm_url_option(command, player.lcm_url));
-  of_play(command.add_flag("--compare", player.compare, "exit code 1 when a program publishes something else"));
+  of_play(command.add_flag("--compare", player.compare, "exit code 1 if a program publishes something else"));
   for (const char* other : {"--world", "--set", "--report", "--threads"}) play->excludes(command.get_option(other));
 }
 
@@ -96,13 +97,14 @@ static void add_replay_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<ReplayArguments>();
   CLI::Option* log_level = add_log_level_option(*command, "error");
   command->add_option("LOG", arguments->replay.log, "log of shoal run --record, or of lcm-logger")->required();
-  command->add_option("--world", arguments->replay.world, "a world file instead of the log's world")->type_name("FILE");
+  command->add_option("--world", arguments->replay.world, "use this world file instead of the world of the log")
+      ->type_name("FILE");
   add_set_option(*command, arguments->replay.load.sets);
   add_allow_path_option(*command, arguments->replay.load);
-  command->add_option("--until", arguments->replay.until_s, "simulated seconds; without it to the end of the log")
+  command->add_option("--until", arguments->replay.until_s, "simulated seconds; default: to the end of the log")
       ->type_name("S")
       ->check(number_from(0, 1e9));
-  command->add_option("--report", arguments->report, "file for all differences")->type_name("FILE");
+  command->add_option("--report", arguments->report, "write all differences to this file")->type_name("FILE");
   add_threads_option(*command, arguments->replay.threads);
   add_plugin_option(*command);
   add_player_options(*command, *arguments);
@@ -118,10 +120,10 @@ static void add_replay_command(CLI::App& app, int& exit_code) {
         {1, "different; with --play only when --compare was given"},
         {2, "wrong usage, or a mistake in the world"},
         {4, "the log lacks data that a replay needs, or a file or bus error"},
-        {5, "with --play: no program came, or one did not answer in time"},
+        {5, "with --play: no program connected, or one did not answer in time"},
         {130, "ended by Ctrl-C"}},
-       {"With --play the messages of a record go to programs as in its run: in lockstep to those that join, and on "
-        "the bus to those that only listen. What they publish changes nothing; it is compared with the record."}});
+       {"With --play the messages of a record are sent to programs as in its run: in lockstep to those that join, and "
+        "on the bus to those that only listen. What they publish changes nothing; it is compared with the record."}});
   // Action.
   command->callback([arguments, log_level, &exit_code] {
     if (log_level->count() > 0 && !sim::log_shows(sim::LogLevel::info)) arguments->replay.quiet = true;

@@ -51,25 +51,26 @@ static void add_score_command(CLI::App& app, int& exit_code) {
   command->add_option("--tum", options.tum, "folder for the true trajectories and the scored estimates as TUM files")
       ->type_name("DIR");
   command
-      ->add_option("--mrclam", options.mrclam,
-                   "folder for truth, odometry and measurements in the form of the UTIAS MR.CLAM data sets")
+      ->add_option(
+          "--mrclam", options.mrclam,
+          "folder for truth, odometry and range-bearing measurements in the format of the UTIAS MR.CLAM data sets")
       ->type_name("DIR");
   add_set_option(*command, options.load.sets);
   add_allow_path_option(*command, options.load);
   add_threads_option(*command, options.threads);
   add_plugin_option(*command);
   command->add_flag("--quiet", options.quiet, "no progress");
-  command_line::set_help_end(
-      *command,
-      {{"shoal score run.lcm --json scores.json", "shoal score run.lcm --estimate mine.csv --metric cooperative",
-        "shoal score run.lcm --tum trajectories"},
-       {{0, "all rules hold"},
-        {1, "a rule of the world fails"},
-        {2, "wrong usage, or a mistake in the world or the file"},
-        {4, "the log lacks data that a replay needs, or a file error"},
-        {130, "ended by Ctrl-C"}},
-       {"The world of the log is run again, so all metrics are known as in the run.  docs/guides/scoring.md has the "
-        "columns of --estimate."}});
+  command_line::set_help_end(*command, {{"shoal score run.lcm --json scores.json",
+                                         "shoal score run.lcm --estimate mine.csv --metric cooperative",
+                                         "shoal score run.lcm --tum trajectories"},
+                                        {{0, "all rules hold"},
+                                         {1, "a rule of the world fails"},
+                                         {2, "wrong usage, or a mistake in the world or the file"},
+                                         {4, "the log lacks data that a replay needs, or a file error"},
+                                         {130, "ended by Ctrl-C"}},
+                                        {"The world of the log is replayed, so that all metrics are available as in "
+                                         "the run.  docs/guides/scoring.md has the "
+                                         "columns of --estimate."}});
   command->callback([arguments, log_level, &exit_code] {
     if (log_level->count() > 0 && !sim::log_shows(sim::LogLevel::info)) arguments->score.quiet = true;
     try {

@@ -37,7 +37,7 @@ bool restores(const experiment::Snapshot& snapshot, const std::string& path) {
   sim::World world(loaded.config, bus);
   world.state().restore(snapshot.state);
   const bool equal = world.state().hash() == snapshot.state_hash;
-  std::cout << (equal ? "restores with the same hash\n" : "restores with another hash\n");
+  std::cout << (equal ? "restores with the same hash\n" : "restores with a different hash\n");
   return equal;
 }
 
@@ -74,7 +74,7 @@ static void add_snapshot_command(CLI::App& app, int& exit_code) {
       {{"shoal run worlds/minimal.yaml --duration 20 --snapshot-at 10 --snapshots snaps",
         "shoal snapshot snaps/branch0_step1000.snapshot --check", "shoal run --from snaps/branch0_step1000.snapshot"},
        {{0, "good"},
-        {1, "restored with another hash"},
+        {1, "restored with a different hash"},
         {2, "wrong usage"},
         {4,
          "not a snapshot, damaged, from another build, or a changed file of its world (mesh, terrain, texture, "

@@ -339,6 +339,7 @@ Json world_schema() {
 }  // namespace
 
 std::string study_schema(const std::vector<sim::ParamInfo>& table) {
+  // Seeds have four forms, which the table of keys cannot express.
   const Json seed = number_schema("integer", sim::at_least(0));
   const Json range{{"type", "string"}, {"pattern", "^[0-9]+( *- *[0-9]+)?$"}};
   const Json one_seed{{"anyOf", {seed, range}}};

@@ -48,6 +48,7 @@ Json value_schema(const sim::ArgDeclaration& arg) {
     case sim::ArgType::integer:
       return number_schema(arg);
     case sim::ArgType::text:
+      // YAML reads a text such as 12 or true as another type; the argument gets what is written.
       return {{"type", {"string", "number", "boolean"}}};
     case sim::ArgType::flag:
       return {{"type", "boolean"}};
@@ -80,6 +81,7 @@ std::vector<sim::ProgramDeclaration> shipped_declarations() {
 }
 
 nlohmann::ordered_json args_schema(const sim::ProgramDeclaration& declaration) {
+  // A program without arguments may have an empty `args:`, which is null in YAML.
   Json schema{{"type", {"object", "null"}}, {"properties", Json::object()}, {"additionalProperties", false}};
   for (const sim::ArgDeclaration& arg : declaration.args) {
     std::string meaning = arg.meaning;

@@ -33,7 +33,7 @@ std::string traffic_of(const sim::DeviceType& type) {
   return text + "\n";
 }
 
-/// For lines of any length unless `columns` are given.
+/// Lines have any length unless `columns` are given.
 std::string message_text(const shoal::MessageSchema& schema, std::size_t columns = 100'000) {
   std::string text = fmt::format("{}  fingerprint {:016x}\n", schema.name, schema.fingerprint);
   std::string comment = schema.comment;  // it has its own lines
@@ -86,7 +86,7 @@ std::string devices_page() {
                      "devices have. Angles ending in `_deg` are degrees; everything else is SI.\n\n"
                      "## Keys of every device\n\n" +
                      sim::markdown_table(common_params()) +
-                     "\n## Noise\n\nA key of type map that speaks of an error has these keys. They compose in this "
+                     "\n## Noise\n\nA key of type map that describes an error has these keys. They compose in this "
                      "order: scale error, bias, random walk, Gauss-Markov, gaussian, uniform, outliers, quantization, "
                      "saturation.\n\n" +
                      sim::markdown_table(params_of<sim::NoiseParams>());
@@ -221,8 +221,8 @@ std::string metrics_page() {
   std::string page =
       fmt::format(fmt::runtime(generated), "metrics") +
       "# Metrics and their figures\n\nEach type of metric gives these figures, called `NAME.figure` in "
-      "`summary.json`, `metrics.csv` and pass rules. A figure that there is nothing to compute from is "
-      "NaN: null in `summary.json`, `none` in reports. Keys that a type needs are bold; "
+      "`summary.json`, `metrics.csv` and pass rules. A figure without data is NaN: null in `summary.json`, `none` in "
+      "reports. Keys that a type needs are bold; "
       "[world_format.md](world_format.md) explains them, [scoring.md](../guides/scoring.md) the metrics.\n";
   for (const sim::MetricKind* kind : sim::MetricRegistry::instance().all()) {
     page += fmt::format("\n## {}\n\nWhat it measures: {}. Keys: {}.\n\n| figure | unit | meaning |\n|---|---|---|\n",

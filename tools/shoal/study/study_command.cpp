@@ -39,6 +39,8 @@ int study(const std::string& path, const experiment::StudyChanges& changes, expe
   experiment::catch_signals(true);
   try {
     std::vector<experiment::StudyRun> runs = experiment::plan_study(loaded, options.output);
+    // The manifest is written before the first run, so that an interrupted study can be continued by `shoal study
+    // run`.
     experiment::write_manifest(options.output, loaded, runs);
     experiment::check_outputs(options.output, loaded.config);
     experiment::StudyProgress progress{runs.size()};
@@ -130,13 +132,12 @@ int plan(const std::string& path, const experiment::StudyChanges& changes, std::
 
 /// Adds the options that change what a study file says.
 void add_change_options(CLI::App& command, std::string& seeds, experiment::StudyChanges& changes, std::string& output) {
-  command.add_option("--seeds", seeds, "instead of those of the study: 7, 1-10 or 1-3,8")->type_name("SEEDS");
+  command.add_option("--seeds", seeds, "seeds instead of those of the study: 7, 1-10 or 1-3,8")->type_name("SEEDS");
   command
       .add_option("--duration", changes.duration_s, "shorten every run to this simulated duration, s, for a quick look")
       ->type_name("S")
       ->check(number_from(1e-6, 1e9));
-  command
-      .add_option("--output", output, "output folder; without it results/STUDY, with --duration 10 results/STUDY_10s")
+  command.add_option("--output", output, "output folder; default results/STUDY, with --duration 10 results/STUDY_10s")
       ->type_name("DIR");
 }
 
@@ -149,7 +150,7 @@ void take_seeds(const std::string& seeds, experiment::StudyChanges& changes) {
 }
 
 void add_study_plan_command(CLI::App& study_command, int& exit_code) {
-  CLI::App* command = study_command.add_subcommand("plan", "Write the list of runs of a study, and run none");
+  CLI::App* command = study_command.add_subcommand("plan", "Write the list of runs of a study without running them");
   struct Arguments {
     std::string path, seeds, output;
     experiment::StudyChanges changes;

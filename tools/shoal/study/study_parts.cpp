@@ -62,7 +62,8 @@ void add_jobs_options(CLI::App& command, experiment::StudyOptions& options) {
                   "threads of each run, which share the work of a step; 0: the processors shared among the runs")
       ->type_name("N")
       ->check(whole_from(0, 256));
-  command.add_option("--run-timeout", options.run_timeout_s, "wall time after which a run is ended and has failed")
+  command
+      .add_option("--run-timeout", options.run_timeout_s, "wall time after which a run is ended and counts as failed")
       ->type_name("S")
       ->check(number_from(0, 1e9));
   command.add_flag("--fresh", options.fresh, "repeat runs that are complete");

@@ -148,7 +148,7 @@ void add_study_run_command(CLI::App& study_command, int& exit_code) {
   command->add_option("--ssh-login-file", options.ssh_login_file, "machines for GNU parallel, its --sshloginfile")
       ->type_name("FILE");
   command->add_option("--partition", options.partition, "of Slurm")->type_name("NAME");
-  command->add_option("--time", options.time_limit, "limit of Slurm for a job, such as 30 (minutes) or 2:00:00")
+  command->add_option("--time", options.time_limit, "Slurm time limit of a job, such as 30 (minutes) or 2:00:00")
       ->type_name("TIME");
   command->add_option("--sbatch", options.sbatch, "further option of sbatch, such as --sbatch=--mem=2G")
       ->type_name("OPTION")
@@ -183,10 +183,9 @@ void add_study_collect_command(CLI::App& study_command, int& exit_code) {
   const auto arguments = std::make_shared<Arguments>();
   add_log_level_option(*command, "warn");
   command->add_option("DIR", arguments->directory, "folder with the manifest of `shoal study plan`")->required();
-  command->add_flag(
-      "--show", arguments->show,
-      "execute the runs with the largest and smallest figures again, each with its page in three dimensions");
-  command->add_flag("--quiet", arguments->quiet, "no message about the files");
+  command->add_flag("--show", arguments->show,
+                    "rerun the runs with the largest and smallest figures, each with a 3-D page");
+  command->add_flag("--quiet", arguments->quiet, "do not report the files written");
   add_algorithm_option(*command, arguments->changes);
   add_allow_path_option(*command, arguments->load);
   add_plugin_option(*command);

@@ -34,7 +34,7 @@ std::string values_of(const experiment::Tuning& tuning, const experiment::TunedP
 /// Returns `a rule of its world does not hold in 2 of 4 runs`; empty: in none.
 std::string failed_text(const experiment::TunedPoint& point) {
   if (point.failed == 0) return {};
-  return fmt::format("a rule of its world does not hold in {} of {} runs", point.failed, point.runs);
+  return fmt::format("a rule of its world fails in {} of {} runs", point.failed, point.runs);
 }
 
 /// Throws CLI::ValidationError for a figure that no metric of the world has.
@@ -60,9 +60,11 @@ int tune(TuneArguments& arguments) {
     experiment::Tuning tuning(std::move(study), options);
     const std::string table = options.study.output + "/tune.csv";
     experiment::make_folders(options.study.output, options.study.output);
+    // What cannot be written is refused before the first run.
     experiment::refuse_links(options.study.output, table);
     experiment::check_whole_file(table);
     tuning.run([&](int generation) {
+      // After each generation, so that the table is whole when the search is interrupted.
       experiment::write_whole_file(table, tuning.to_csv());
       const experiment::TunedPoint& best = *tuning.best();
       const std::string failed = best.failed > 0 ? "; FAILED: " + failed_text(best) : "";
@@ -101,7 +103,7 @@ static void add_tune_command(CLI::App& app, int& exit_code) {
   command->add_option("--figure", options.figure, "figure of the runs, such as cooperative.rms_m")
       ->type_name("METRIC.FIGURE")
       ->required();
-  command->add_option("--goal", arguments->goal, "which value of it is best")
+  command->add_option("--goal", arguments->goal, "whether the smallest or largest value is best")
       ->type_name("GOAL")
       ->check(one_of({"min", "max"}));
   command->add_option("--over", options.statistic, "statistic over the cases and seeds of a point")
@@ -114,7 +116,7 @@ static void add_tune_command(CLI::App& app, int& exit_code) {
       ->add_option("--population", options.population, "points of a generation; 0: 4 + 3 ln of the number of factors")
       ->type_name("N")
       ->check(whole_from(0, 1000));
-  command->add_option("--sigma", options.sigma, "first standard deviation, as a share of each range")
+  command->add_option("--sigma", options.sigma, "initial standard deviation, as a fraction of each range")
       ->type_name("SHARE")
       ->check(number_from(0.001, 1));
   command->add_option("--search-seed", options.seed, "seed of the search")
@@ -125,8 +127,7 @@ static void add_tune_command(CLI::App& app, int& exit_code) {
   command->add_option("--duration", arguments->changes.duration_s, "simulated seconds of each run")
       ->type_name("S")
       ->check(number_from(1e-6, 1e9));
-  command->add_option("--output", options.study.output, "output folder; without it results/STUDY_tune")
-      ->type_name("DIR");
+  command->add_option("--output", options.study.output, "output folder; default results/STUDY_tune")->type_name("DIR");
   add_jobs_options(*command, options.study);
   add_allow_path_option(*command, arguments->changes.load);
   add_plugin_option(*command);
@@ -134,7 +135,7 @@ static void add_tune_command(CLI::App& app, int& exit_code) {
       *command,
       {{"shoal tune balance_gains.yaml --figure balance.pitch_std_deg --generations 10 --jobs 2"},
        {{0, "a best point was found"},
-        {1, "rules of the world do not hold at the best point"},
+        {1, "rules of the world fail at the best point"},
         {2, "wrong usage, or a mistake in the study or its world"},
         {4, "no point has a value, or a file error"},
         {130, "ended by Ctrl-C"}},

@@ -35,7 +35,7 @@ double height_over(const std::vector<sim::Vector3d>& points, const Triangle& t, 
   return (b - a).cross(c - a).stableNormalized().dot(p - a);
 }
 
-/// Tetrahedron of four points that are far apart; nothing when all points lie in one plane.
+/// Tetrahedron of four points that are far apart; std::nullopt if all points lie in one plane.
 std::optional<std::vector<Triangle>> first_solid(const std::vector<sim::Vector3d>& points, double tolerance) {
   const std::uint32_t a = index_of_max(points, [](const sim::Vector3d& p) { return -p.x(); });
   const std::uint32_t b = index_of_max(points, [&](const sim::Vector3d& p) { return (p - points[a]).norm(); });

@@ -9,7 +9,7 @@
 namespace tools {
 
 /// Returns the points that lie outermost in 256 directions, spread evenly (Fibonacci lattice), and along the axes.
-/// Their bounding box is that of all points.
+/// The hull has the bounding box of all points.
 std::vector<sim::Vector3d> outermost_points(const std::vector<sim::Vector3d>& points);
 
 /// Returns the convex hull as a closed mesh that faces outwards, by insertion of one point after the other: time grows

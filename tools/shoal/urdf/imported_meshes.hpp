@@ -11,7 +11,7 @@
 
 namespace tools {
 
-/// What becomes of the meshes of a URDF.
+/// Treatment of the meshes of a URDF.
 enum class MeshUse {
   hull,  ///< collisions: the convex hull; visual shapes: the mesh itself
   box,   ///< the bounding box

@@ -59,7 +59,7 @@ struct ImportedVehicle {
 /// Free: the root link moves.  Fixed: a joint fixes it to the world; it then needs no mass.
 enum class Base { free, fixed };
 
-/// What happens to a body without mass: it is refused, or complete_masses() gives it one.
+/// Treatment of a body without mass: it is refused, or complete_masses() gives it one.
 enum class NoMass { refused, of_shapes };
 
 /// Makes bodies and joints of a checked robot: the frame of the root link becomes the vehicle's frame, fixed joints are

@@ -132,12 +132,14 @@ std::string fault_of(const sim::Matrix3d& inertia_kgm2) {
 }
 
 void complete(ImportedBody& body, HullSolids& hulls, double density_kgpm3, std::vector<UrdfNote>& notes) {
+  // The shapes that collide are kept in the vehicle file; visual ones are the last resort.
   sim::MeshSolid solid = solid_of_body(body, false, hulls);
   if (!is_solid(solid, density_kgpm3)) solid = solid_of_body(body, true, hulls);
   const bool has_shapes = is_solid(solid, density_kgpm3);
   std::string text;
   if (body.lacks_mass) {
     constexpr double radius_m = 0.01;
+    // Without any shape a ball of 10 mm radius: small, but not so small that ODE becomes stiff.
     if (!has_shapes) solid = ball(radius_m);
     body.mass_kg = density_kgpm3 * solid.volume_m3;
     body.center_of_mass_m = solid.centroid_m;

@@ -38,7 +38,7 @@ std::vector<std::string_view> words_of(std::string_view text) {
   return words;
 }
 
-/// Parses a number; nothing for any other text.
+/// Parses a number; std::nullopt for any other text.
 std::optional<double> parse_number(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   const auto value = sim::exact_number<double>(word);
@@ -105,7 +105,7 @@ void UrdfElement::note_others(std::initializer_list<std::string_view> known, std
 }
 
 void UrdfElement::note_other_attributes(const std::string& of, std::vector<UrdfNote>& notes) const {
-  // Of elements that mean the same wherever they are.
+  // Elements that mean the same everywhere.
   static const std::map<std::string_view, std::set<std::string_view>> known_of = {
       {"origin", {"xyz", "rpy", "quat_xyzw"}},
       {"axis", {"xyz"}},
@@ -130,7 +130,7 @@ std::string UrdfElement::text(const char* attribute) const {
   if (!has(attribute)) refuse(fmt::format("<{}> needs the attribute '{}'", name(), attribute));
   const std::string value = element_->Attribute(attribute);
   if (value.find("${") != std::string::npos || value.find("$(") != std::string::npos)
-    refuse(fmt::format("'{}' is an expression of xacro, {}: run `xacro FILE > robot.urdf` first", attribute,
+    refuse(fmt::format("'{}' is a xacro expression, {}: run `xacro FILE > robot.urdf` first", attribute,
                        shown_text(value)));
   return value;
 }

@@ -47,7 +47,7 @@ class UrdfElement {
   std::optional<double> optional_number(const char* attribute) const;
   /// A number of any size, also infinite, limited to -1e9 and 1e9.
   double limited_number(const char* attribute) const;
-  /// Finite numbers, separated by blanks; none when one of the words is not one.
+  /// Finite numbers, separated by blanks; empty when one of the words is not a finite number.
   std::vector<double> any_numbers(const char* attribute) const;
   /// `count` finite numbers, separated by blanks.
   std::vector<double> numbers(const char* attribute, std::size_t count) const;

@@ -107,6 +107,7 @@ UrdfJoint read_urdf_joint(UrdfElement element, std::vector<UrdfNote>& notes) {
   joint.parent = element.required_child("parent").text("link");
   joint.child = element.required_child("child").text("link");
   joint.X_PJ = element.origin();
+  // These types have no single axis.
   const bool has_axis = joint.type != UrdfJointType::fixed && joint.type != UrdfJointType::floating &&
                         joint.type != UrdfJointType::planar;
   if (!has_axis) return joint;

@@ -68,7 +68,7 @@ struct UrdfJoint {
   sim::SourcePlace place;
 };
 
-/// What an import leaves out.
+/// Note on something that an import leaves out.
 struct UrdfNote {
   sim::SourcePlace place;
   std::string text;

@@ -48,7 +48,7 @@ void note_document_type(const tinyxml2::XMLDocument& document, const std::string
   }
 }
 
-/// Refuses elements of xacro, which must be expanded first.
+/// Refuses xacro elements, which must be expanded first.
 void refuse_xacro(const UrdfElement& element) {
   for (const UrdfElement& child : element.children())
     if (child.name().starts_with("xacro:"))

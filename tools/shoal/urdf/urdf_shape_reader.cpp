@@ -154,7 +154,7 @@ std::optional<UrdfShape> read_urdf_shape(const UrdfElement& element, const UrdfC
   const UrdfElement& material = materials.front();
   if (materials.size() > 1)
     notes.push_back({materials[1].place(), element.who() + ": only the first <material> of a shape is imported"});
-  // Its own color, else the one of its name; read_urdf_colors() has added the notes.
+  // The material's own color, else the one of its name; read_urdf_colors() has added the notes.
   std::vector<UrdfNote> known_notes;
   shape.color = read_color(material, known_notes);
   if (!shape.color.empty()) return shape;

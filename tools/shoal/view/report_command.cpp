@@ -64,10 +64,10 @@ void make_page(const std::string& record, const std::string& directory, const st
     throw std::runtime_error(
         fmt::format("{}: is of world '{}', but the run in {} is of '{}'", record, page.world, directory, world));
   write_page(path, page.html);
-  std::cout << path << ": the run in three dimensions, " << page.to_text() << '\n';
+  std::cout << path << ": the run in 3-D, " << page.to_text() << '\n';
 }
 
-/// Makes the page in three dimensions, and returns its path; empty: there is none, as it has said.
+/// Makes the 3-D page and returns its path; empty if there is none, after a message.
 std::string page_in_3d(const ReportArguments& arguments) {
   const std::string& directory = arguments.directories.front();
   const bool demanded = !arguments.record.empty() || !arguments.page.empty();
@@ -85,7 +85,7 @@ std::string page_in_3d(const ReportArguments& arguments) {
     return path;
   } catch (const std::runtime_error& reason) {
     if (demanded) throw;
-    sim::log_info("no page in three dimensions: {}", reason.what());
+    sim::log_info("no 3-D page: {}", reason.what());
     return "";
   }
 }
@@ -134,23 +134,20 @@ static void add_report_command(CLI::App& app, int& exit_code) {
   command->add_option("DIR", arguments->directories, "results directories; several runs are compared")->required();
   command
       ->add_option("--output", arguments->output,
-                   "the page; without it DIR/report.html, or comparison.html in the first of several")
+                   "page to write; default DIR/report.html, or comparison.html in the first of several")
       ->type_name("FILE");
   command
-      ->add_option("--record", arguments->record,
-                   "record of the run, for a page in three dimensions; without it the only *.lcm in DIR")
+      ->add_option("--record", arguments->record, "record of the run, for a 3-D page; default: the only *.lcm in DIR")
       ->type_name("LOG");
   CLI::Option* page =
-      command->add_option("--page", arguments->page, "the page in three dimensions; without it DIR/run.html")
-          ->type_name("FILE");
-  command->add_flag("--no-page", arguments->no_page, "no page in three dimensions")->excludes(page);
-  command_line::set_help_end(
-      *command,
-      {{"shoal report results/coop_land", "shoal report results/coop_land --record coop.lcm",
-        "shoal report results/seed1 results/seed2 --output comparison.html"},
-       {{0, "success"}, {2, "wrong usage"}, {4, "a file cannot be read or written"}},
-       {"Each page is one file that needs no network. That in three dimensions has at most 20 MB; of a longer run it "
-        "has fewer poses.  See docs/guides/reports.md."}});
+      command->add_option("--page", arguments->page, "3-D page to write; default DIR/run.html")->type_name("FILE");
+  command->add_flag("--no-page", arguments->no_page, "do not write a 3-D page")->excludes(page);
+  command_line::set_help_end(*command,
+                             {{"shoal report results/coop_land", "shoal report results/coop_land --record coop.lcm",
+                               "shoal report results/seed1 results/seed2 --output comparison.html"},
+                              {{0, "success"}, {2, "wrong usage"}, {4, "a file cannot be read or written"}},
+                              {"Each page is one file that needs no network. The 3-D page has at most 20 MB; for a "
+                               "longer run it has fewer poses.  See docs/guides/reports.md."}});
   command->callback([arguments, &exit_code] { exit_code = report(*arguments); });
 }
 

@@ -155,13 +155,15 @@ int view_bus(const ViewArguments& arguments) {
       view.flush();
       next_flush = now + tick;
     }
+    // A run publishes its scene only every 10 s; asking for it shows the page at once.
     if (!view.has_scene() && now >= next_request) {
       ask_for_scene(lcm);
       next_request = now + ask_interval;
+      // The first request may have been too early; after two the user is notified.
       if (++requests == 2)
         sim::log_info(
-            "waits for sim.scene: a run sends it when it is asked; of a log that is played it comes again when it was "
-            "recorded, every 10 s or, when it is large, more rarely; `shoal view LOG` shows a log at once");
+            "waiting for sim.scene: a run sends it on request; a played log repeats it as recorded, every 10 s or, if "
+            "it is large, less often; `shoal view LOG` shows a log at once");
     }
     const auto wait = std::chrono::duration_cast<std::chrono::milliseconds>(next_flush - Clock::now());
     if (const auto message = lcm.next(std::max(wait, std::chrono::milliseconds(1))))
@@ -178,7 +180,7 @@ void refuse_world(const std::string& given) {
     is_shipped |= world.name == given;
   if (!is_world && (!is_shipped || std::filesystem::exists(given))) return;
   sim::throw_config_error({}, "'" + sim::shortened(sim::printable(given)) + "'",
-                          "is a world, and this command shows logs; `shoal run " + given + " --view` shows its run");
+                          "is a world, but this command shows logs; `shoal run " + given + " --view` shows its run");
 }
 
 int view(ViewArguments& arguments) {
@@ -201,16 +203,16 @@ static void add_view_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.get_subcommand("view");
   const auto arguments = std::make_shared<ViewArguments>();
   add_log_level_option(*command);
-  command->add_option("LOG", arguments->logs, "log of a run, or two to compare; without it what is on the bus is shown")
+  command->add_option("LOG", arguments->logs, "log of a run, or two to compare; default: show what is on the bus")
       ->expected(0, 2);
   command->add_flag("--resimulate", arguments->resimulate,
-                    "run the world of the log again, to see what was not recorded, and to branch from it");
+                    "re-simulate the world of the log, to see what was not recorded and to branch from it");
   command->add_flag("--launch", arguments->launch,
                     "with --resimulate: a branch starts the programs that the world of the log names");
   add_allow_path_option(*command, arguments->load);
   add_threads_option(*command, arguments->threads);
   add_lcm_url_option(*command, arguments->lcm_url);
-  command->add_option("--duration", arguments->duration_s, "seconds of wall time; without it until Ctrl-C")
+  command->add_option("--duration", arguments->duration_s, "seconds of wall time; default: until Ctrl-C")
       ->type_name("S")
       ->check(number_from(0.001, 1e9));
   add_open_option(*command, arguments->open);

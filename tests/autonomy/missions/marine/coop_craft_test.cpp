@@ -60,7 +60,7 @@ TEST(CoopCraft, RemarksOnceThatItNeverReceivedTheVehicleItFollows) {
   }
   ASSERT_EQ(remarks.size(), 1u);
   EXPECT_EQ(remarks.front().first, 60);
-  EXPECT_EQ(remarks.front().second, "after 60 s: it has not received any message from 'auv', which it was to follow");
+  EXPECT_EQ(remarks.front().second, "after 60 s: it has received no message from 'auv', which it was to follow");
 }
 
 TEST(CoopCraft, StopsAndSaysNothingWithoutAFix) {

@@ -25,7 +25,7 @@ TEST(UrdfReader, RefusesXacroWithAHint) {
   EXPECT_EQ(import_error(robot_text("<xacro:property name=\"x\" value=\"1\"/>\n")),
             "r.urdf:2: <xacro:property> is xacro, not URDF: run `xacro FILE > robot.urdf` first");
   EXPECT_EQ(shape_error("<sphere radius=\"${r}\"/>"),
-            "r.urdf:2: link 'a': 'radius' is an expression of xacro, '${r}': run `xacro FILE > robot.urdf` first");
+            "r.urdf:2: link 'a': 'radius' is a xacro expression, '${r}': run `xacro FILE > robot.urdf` first");
   const test_support::ScratchFolder folder;
   const std::string path = folder.file("arm.urdf.xacro");
   std::ofstream(path) << robot_text(link_text("a"));
