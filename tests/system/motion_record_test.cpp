@@ -128,7 +128,8 @@ TEST_F(MotionRecord, ATakePlaysInTheWorldThatItHolds) {
   EXPECT_EQ(played.exit_code, 0) << played.output << played.errors;
   EXPECT_THAT(played.output, HasSubstr("world: the one embedded in " + take() + "\n"));
   EXPECT_THAT(played.output, HasSubstr("the final state equals that of the recording"));
-  EXPECT_THAT(run_shoal({"motion", "play", file_}).errors, HasSubstr("needs --world: '" + file_ + "' contains no world"));
+  EXPECT_THAT(run_shoal({"motion", "play", file_}).errors,
+              HasSubstr("needs --world: '" + file_ + "' contains no world"));
 }
 
 TEST_F(MotionRecord, APageChangesNothing) {
