@@ -9,6 +9,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "experiment/files/csv.hpp"
 #include "experiment/files/gnuplot.hpp"
 #include "experiment/files/scratch_directory.hpp"
 
@@ -112,18 +113,22 @@ std::string states_header() {
 std::string section_of(const FidelityResult& result) {
   std::string text = "### " + result.of.name + "\n\n";
   if (!result.of.text.empty()) text += result.of.text + "\n\n";
-  text += fmt::format("![{0}](fidelity/{0}.png)\n\n", result.of.name);
+  return text + fmt::format("![{0}](fidelity/{0}.png)\n\n", result.of.name);
+}
+
+/// Returns the rows of end_states.csv for a case.
+std::string end_state_of(const FidelityResult& result) {
+  static const char* names[] = {"north_m", "east_m",    "depth_m",  "roll_deg", "pitch_deg",
+                                "yaw_deg", "surge_mps", "sway_mps", "heave_mps"};
   const FidelityState &a = result.theirs.back(), &b = result.ours.back();
-  text += "| at the end | reference | ours | difference |\n|---|---:|---:|---:|\n";
-  static const char* names[] = {"north (m)", "east (m)",    "depth (m)",  "roll (deg)", "pitch (deg)",
-                                "yaw (deg)", "surge (m/s)", "sway (m/s)", "heave (m/s)"};
+  std::string text;
   for (std::size_t k = 0; k < std::size(names); ++k) {
     const double unit = k >= 3 && k < 6 ? degree_rad : 1;
     const double difference = k == 5 ? std::remainder(b[k] - a[k], 2 * M_PI) : b[k] - a[k];
-    text += fmt::format("| {} | {} | {} | {} |\n", names[k], digits(a[k] / unit), digits((a[k] + difference) / unit),
-                        digits(difference / unit));
+    text += fmt::format("{},{},{},{},{}\n", experiment::csv_field(result.of.name), names[k], digits(a[k] / unit),
+                        digits((a[k] + difference) / unit), digits(difference / unit));
   }
-  return text + "\n";
+  return text;
 }
 
 }  // namespace
@@ -160,16 +165,19 @@ void write_fidelity_report(const std::string& folder, const std::string& text,
                            const std::vector<FidelityResult>& results, bool csv) {
   const std::filesystem::path plots = std::filesystem::path(folder) / "fidelity";
   std::filesystem::create_directories(plots);
-  std::string page =
-      "# Fidelity\n\nWritten by `shoal fidelity`.\n\n" + text + "\n## The table\n\n" + fidelity_table(results) + "\n";
-  std::string group;
+  std::string page = "# Fidelity\n\nWritten by `shoal fidelity`.\n\n" + text + "\n## The table\n\n" +
+                     fidelity_table(results) +
+                     "\n[end_states.csv](fidelity/end_states.csv) has the state at the end of each case.\n\n";
+  std::string group, end_states = "case,quantity,reference,simulated,difference\n";
   for (const FidelityResult& result : results) {
     if (result.of.group != group) page += "## " + result.of.title + "\n\n";
     group = result.of.group;
     page += section_of(result);
+    end_states += end_state_of(result);
     plot(plots / (result.of.name + ".png"), result);
     if (csv) write(plots / (result.of.name + ".csv"), states_header() + rows_of(result, result.ours, ',', false));
   }
+  write(plots / "end_states.csv", end_states);
   write(std::filesystem::path(folder) / "fidelity.md", page);
 }
 

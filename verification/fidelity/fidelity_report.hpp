@@ -15,8 +15,9 @@ std::string fidelity_table(const std::vector<FidelityResult>& results);
 /// limits.
 std::string fidelity_line(const FidelityResult& result, std::size_t number, std::size_t count);
 
-/// Writes FOLDER/fidelity.md, and for each case FOLDER/fidelity/NAME.png (reference and simulation overlaid) and, with
-/// `csv`, NAME.csv (our states).  `text`: Markdown for the top.  Throws std::runtime_error.
+/// Writes FOLDER/fidelity.md, FOLDER/fidelity/end_states.csv, and for each case FOLDER/fidelity/NAME.png (reference and
+/// simulation overlaid) and, with `csv`, NAME.csv (our states).  `text`: Markdown for the top.  Throws
+/// std::runtime_error.
 void write_fidelity_report(const std::string& folder, const std::string& text,
                            const std::vector<FidelityResult>& results, bool csv);
 
