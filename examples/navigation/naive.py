@@ -4,7 +4,7 @@
     shoal-nav --log run.lcm --algorithm naive,python:examples/navigation/naive.Naive
 
 An extended Kalman filter that treats received estimates as independent.  Without relative measurements, on_bearing().
-docs/guides/compare_estimators.md has the calls.
+docs/guides/own_estimator.md has the calls.
 """
 
 import numpy as np
