@@ -37,7 +37,7 @@ TEST(ActorAction, NamesItsCommandsAndActors) {
   EXPECT_THAT(test::error_of_world(cart_world("halt")), testing::HasSubstr("forward"));
   std::string yaml = cart_world("stop");
   yaml.replace(yaml.find("{actor: {name: ride"), 19, "{actor: {name: rode");
-  EXPECT_THAT(test::error_of_world(yaml), testing::HasSubstr("did you mean 'ride'?"));
+  EXPECT_THAT(test::error_of_world(yaml), testing::HasSubstr("names no actor 'rode'; known actors: ride"));
 }
 
 }  // namespace

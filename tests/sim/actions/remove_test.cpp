@@ -31,7 +31,7 @@ TEST(RemoveAction, OfOneOfSeveralTakesOneAway) {
 
 TEST(RemoveAction, OfNothingThatTheFileKnowsIsAnError) {
   EXPECT_THAT(test::error_of_world(event_world("  - {name: a, at: 0, do: [{remove: bal}]}\n")),
-              testing::HasSubstr("did you mean 'ball'?"));
+              testing::HasSubstr("names no vehicle or object 'bal'; known vehicles or objects: ball, crate"));
 }
 
 }  // namespace

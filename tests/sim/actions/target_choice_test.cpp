@@ -31,12 +31,12 @@ TEST(TargetChoice, IsOneNameOrOneOfSeveral) {
 }
 
 TEST(TargetChoice, SaysWhatIsWrong) {
-  for (const auto& [yaml, text] :
-       std::map<std::string, std::string>{{"{}", "needs either 'name' or 'one_of'"},
-                                          {"{name: ball, one_of: [cart]}", "needs either 'name' or 'one_of', not both"},
-                                          {"{one_of: []}", "'one_of' must name at least one"},
-                                          {"{name: ''}", "'name' must name a vehicle or an object"},
-                                          {"{name: bal}", "did you mean 'ball'?"}}) {
+  for (const auto& [yaml, text] : std::map<std::string, std::string>{
+           {"{}", "needs either 'name' or 'one_of'"},
+           {"{name: ball, one_of: [cart]}", "needs either 'name' or 'one_of', not both"},
+           {"{one_of: []}", "'one_of' must name at least one"},
+           {"{name: ''}", "'name' must name a vehicle or an object"},
+           {"{name: bal}", "'name' names no vehicle or object 'bal'; known vehicles or objects: ball, cart, crate"}}) {
     sim::TargetChoice target;
     EXPECT_THAT(errors_of(yaml, target), testing::Contains(HasSubstr(text))) << yaml;
   }

@@ -10,8 +10,9 @@ namespace {
 
 /// A free body with a wrench, which acts alone.
 std::string pushed_world() {
-  return test::box_world("        - {name: push, type: body_wrench, force_max_N: 9, torque_max_Nm: 9}\n",
-                         "{step_s: 0.01, gravity_mps2: 0}");
+  return test::box_world(
+      "        - {name: push, type: body_wrench, force_max_N: [9, 9, 9], torque_max_Nm: [9, 9, 9]}\n",
+      "{step_s: 0.01, gravity_mps2: 0}");
 }
 
 TEST(ActingVehicles, InItsFirstStepAVehicleActsInTurn) {

@@ -32,8 +32,9 @@ TEST(Entities, AreNotThereByNamesThatNoOneHas) {
 }
 
 TEST(Entities, OfAWorldAreFoundByTheirNames) {
-  test::TestWorld test(test::box_world("        - {name: imu, type: imu}\n", "{step_s: 0.01}",
-                                       "objects: [{name: crate, parts: [{shape: box, mass_kg: 1}]}]\n"));
+  test::TestWorld test(
+      test::box_world("        - {name: imu, type: imu}\n", "{step_s: 0.01}",
+                      "objects: [{name: crate, position_m: [3, 0, 0], parts: [{shape: box, mass_kg: 1}]}]\n"));
   EXPECT_EQ(test.world.find_vehicle("r1")->name(), "r1");
   EXPECT_EQ(test.world.find_object("crate")->name, "crate");
   EXPECT_NE(test.world.find_vehicle("r1")->find_device("imu"), nullptr);
