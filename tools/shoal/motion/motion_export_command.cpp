@@ -24,8 +24,8 @@ const motion::MotionFormat& format_of(const ExportArguments& arguments) {
                                                  ? motion::motion_format_of_file(arguments.output, "")
                                                  : motion::find_motion_format(arguments.format);
   if (format == nullptr)
-    throw CLI::ValidationError("--format",
-                               "is needed, because '" + arguments.output + "' has no ending of a known format");
+    throw CLI::ValidationError(
+        "--format", "is needed, because '" + arguments.output + "' does not have the ending of a known format");
   return *format;
 }
 
