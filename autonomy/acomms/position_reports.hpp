@@ -33,8 +33,8 @@ class PositionReports {
   /// Throws shoal::MessageError for bytes that are not a plausible report, because any program may send anything.
   void receive(const shoal::modem_received_t& packet);
   /// Returns the position of a rover at `utime` by its last report, and marks that report as used: its error is the
-  /// same at every detection and must not be counted repeatedly.  Nothing when there is no unused report or it is too
-  /// old.
+  /// same at every detection and must not be counted repeatedly.  std::nullopt when there is no unused report or it
+  /// is too old.
   std::optional<Neighbor> take(const std::string& vehicle, std::int64_t utime);
 
  private:

@@ -13,12 +13,12 @@
 
 namespace autonomy {
 
-/// Returns the message for an acoustic modem that broadcasts the state.  Nothing when it cannot be encoded in a frame.
+/// Returns the message for an acoustic modem that broadcasts the state; std::nullopt when it cannot be encoded.
 std::optional<shoal::modem_send_t> to_everybody(const AcousticState& state);
 std::optional<shoal::modem_send_t> to_everybody(const AcousticOrder& order);
 
-/// Returns the state in a packet.  Nothing when it is not a valid frame, or when its time differs by more than a minute
-/// from the time of sending, which makes it useless.
+/// Returns the state in a packet; std::nullopt when it is not a valid frame, or when its time differs by more than a
+/// minute from the time of sending, which makes it useless.
 std::optional<AcousticState> state_in(const shoal::acoustic_received_t& packet);
 std::optional<AcousticState> state_in(const shoal::modem_received_t& packet);
 

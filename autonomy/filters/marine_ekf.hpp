@@ -108,7 +108,7 @@ class MarineEkf {
     std::int64_t utime;
     Vector2d displacement_W;
   };
-  /// Returns the measured displacement from `utime` to now.  Nothing when that is too old.
+  /// Returns the measured displacement from `utime` to now; std::nullopt when that is too old.
   std::optional<Vector2d> distance_since(std::int64_t utime) const;
   /// Returns the estimated displacement that corresponds to a measured one.
   Vector2d corrected(const Vector2d& displacement_W) const;

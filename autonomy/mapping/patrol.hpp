@@ -49,7 +49,7 @@ class Patrol {
 
   /// Number of completed rounds.
   int rounds() const { return rounds_; }
-  /// None when it drives along paths.
+  /// std::nullopt when it drives along paths.
   const std::optional<WaypointFollower>& follower() const { return follower_; }
 
  private:

@@ -35,8 +35,8 @@ struct Alignment {
 
 /// Returns the pose of the vehicle of `scan` in the frame of that of `reference`, near a first guess: the points of one
 /// are brought onto the lines of the other (iterative closest point with a point-to-line metric, Censi 2008), with
-/// Cauchy weights.  Points are paired with lines up to `gate_m` away at first, and up to 6 cm at last.  None when fewer
-/// than 0.4 of the points find a line.
+/// Cauchy weights.  Points are paired with lines up to `gate_m` away at first, and up to 6 cm at last.  std::nullopt
+/// when fewer than 0.4 of the points find a line.
 std::optional<Alignment> align(const Outline& reference, const Outline& scan, const Pose2& guess, double gate_m);
 
 }  // namespace autonomy

@@ -82,7 +82,7 @@ void check_options(const std::string& url, const UrlParts& parts) {
   const bool multicast = parts.kind == "udpm";
   std::set<std::string> seen;
   for (const auto& [key, value] : parts.options) {
-    // Only options that Shoal's own receiver understands: another one would be ignored without a word.
+    // Only options that Shoal's own receiver understands: any other would be silently ignored.
     if (!multicast || (key != "ttl" && key != "recv_buf_size"))
       refuse_url(url, "unknown option '" + key + "'" + (multicast ? "; known options: recv_buf_size, ttl" : ""));
     if (!seen.insert(key).second) refuse_url(url, "option '" + key + "' is given twice");

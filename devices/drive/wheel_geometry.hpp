@@ -43,7 +43,7 @@ double scrubbing_track_m_of(const sim::VehicleConfig& vehicle, const std::vector
 std::optional<double> wheel_radius_m_of(const sim::VehicleConfig& vehicle, const std::vector<std::string>& joints);
 
 /// Returns the distance from the rear axle to the steered wheels; the rear axle is that of the rearmost of the other
-/// wheels on hinges.  None when there are no wheels behind the steered ones.
+/// wheels on hinges.  std::nullopt when there are no wheels behind the steered ones.
 std::optional<double> wheelbase_m_of(const sim::VehicleConfig& vehicle, const std::vector<std::string>& steered_joints);
 
 /// Length of a device, configured or derived from the joints.

@@ -71,7 +71,7 @@ class Program {
   bool sends() const { return has("slot") || has("random_s"); }
   std::string slot_text() const { return value_of("slot") + "/" + value_of("slots"); }
 
-  /// Nothing when it has none, or one that the program itself rejects.
+  /// Returns std::nullopt without slots, and for text that the program itself rejects.
   std::optional<Slots> slots() const {
     try {
       const int slot = std::stoi(value_of("slot")), slots = std::stoi(value_of("slots"));

@@ -23,7 +23,7 @@ struct Outcome {
   }
 };
 
-/// Nothing when a run has no result.
+/// Returns std::nullopt when a run has no result.
 std::optional<Outcome> outcome_of(std::size_t in_case, const std::vector<StudyRun>& runs) {
   Outcome outcome;
   for (const StudyRun& run : runs) {

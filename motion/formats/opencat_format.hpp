@@ -9,7 +9,7 @@
 namespace motion {
 
 // A gait is repeated, one row after the other.  Between two rows of a behavior all joints move on a cosine, in as many
-// steps as the joint with the longest way needs at the speed of the row; how long a step takes is not in the file.
+// steps as the joint that moves farthest needs at the speed of the row; how long a step takes is not in the file.
 
 constexpr double skill_delay_s = 0.05;  ///< unit of the delay after a row
 constexpr double rad_per_deg = std::numbers::pi / 180;

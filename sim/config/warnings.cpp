@@ -6,7 +6,7 @@
 
 namespace sim {
 
-/// Returns the line of a text; nothing when it is known.
+/// Returns the line of a text; std::nullopt when it was reported before.
 std::optional<std::string> Warnings::new_line(const SourcePlace& place, const std::string& who,
                                               const std::string& text) {
   std::string line = place.text();

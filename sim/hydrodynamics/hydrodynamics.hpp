@@ -63,7 +63,7 @@ class Hydrodynamics {
     return found.known ? found.motion : body.motion_for_forces(step_s_);
   }
   /// Adds the hydrodynamic forces to those that actuators applied to the bodies in this step.  `threads` share the
-  /// bodies; may be null.  If several bodies throw, the exception of the first is rethrown.
+  /// bodies; may be null.  If several bodies throw, the exception of the first is reported.
   void step(double gravity_mps2, ThreadPool* threads = nullptr);
   /// Returns the warnings about bodies since the last call.
   std::vector<Warning> take_warnings() { return std::exchange(warnings_, {}); }

@@ -103,8 +103,8 @@ class MountedDevice : public VisitedInSteps {
   const std::string& report_channel() const { return report_channel_; }
   const std::string& command_channel() const { return command_channel_; }
   const DeviceConfig& config() const { return *config_; }
-  /// What all its readings lacked, and the time from the first to the last; nothing when some did not, or none was
-  /// taken.  See Sensor::lacks().
+  /// What all its readings lacked, and the time from the first to the last; std::nullopt when some lacked nothing
+  /// or none was taken.  See Sensor::lacks().
   struct Lack {
     std::string_view what;
     Time span;

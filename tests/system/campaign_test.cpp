@@ -425,7 +425,7 @@ TEST(Campaign, TuningPrefersAPointThatHoldsTheRulesOfItsWorld) {
   EXPECT_THAT(table, testing::ContainsRegex(",0\n"));
   const Ended none = tune("3", "none");
   EXPECT_EQ(none.exit_code, 1) << none.errors;
-  EXPECT_THAT(none.output, HasSubstr("FAILED: a rule of its world does not hold in 1 of 1 runs at the best point\n"));
+  EXPECT_THAT(none.output, HasSubstr("FAILED: a rule of its world fails in 1 of 1 runs at the best point\n"));
 }
 
 TEST(Campaign, SlurmGetsPatternsAndJobsOfThisUserOnly) {

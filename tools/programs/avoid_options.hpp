@@ -17,7 +17,7 @@ struct AvoidOptions {
   ObstacleTracks::Params tracks;
 
   void declare(command_line::DeclaredOptions& options);
-  /// Nothing when the vehicle is not to avoid anything.
+  /// Returns std::nullopt when the vehicle does not avoid obstacles.
   std::optional<Avoidance> make() const;
   /// Returns the behavior, which avoids obstacles if that was chosen.
   std::unique_ptr<HelmBehavior> around(std::unique_ptr<HelmBehavior> behavior) const;

@@ -181,7 +181,7 @@ static void add_spy_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<SpyArguments>();
   add_log_level_option(*command);
   command->add_option("CHANNEL", arguments->channel, "show every message of this channel in full");
-  command->add_option("--duration", arguments->duration_s, "wall seconds; forever, the default: until Ctrl-C")
+  command->add_option("--duration", arguments->duration_s, "wall seconds; default: forever, until Ctrl-C")
       ->type_name("S")
       ->transform(command_line::number_or_word(1e-6, 1e9, "forever"));
   add_lcm_url_option(*command, arguments->lcm_url);

@@ -13,7 +13,7 @@
 
 namespace viewer {
 
-/// Where a log has what a viewer needs, by simulated time: found in one pass over the file.  Of a log with a rewind
+/// Index of what a viewer needs in a log, by simulated time, built in one pass over the file.  Of a log with a rewind
 /// (lcm-logger's) the last of overlapping parts counts.
 class LogIndex {
  public:

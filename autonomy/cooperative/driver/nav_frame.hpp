@@ -48,7 +48,7 @@ Bytes encode_frame(const NavFrame& frame, std::size_t frame_bytes);
 /// Returns the length of the payload in a frame that encode_frame() made.
 std::size_t payload_length(const Bytes& frame);
 /// Decodes a frame that was transmitted at `tol`, by the sender's clock, whose payload_time is within 30 s of it.
-/// Nothing for other bytes.
+/// Returns std::nullopt for other bytes.
 std::optional<NavFrame> decode_frame(std::span<const std::uint8_t> bytes, Time tol);
 
 }  // namespace navigation

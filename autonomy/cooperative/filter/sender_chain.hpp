@@ -34,7 +34,7 @@ struct ChainLink {
 ///     M^-1 = A_ob^-1 (A_oo - B_oo) A_bo^-1,   F_bb = M - A_bb,   F_ba = -M A_ob^-1 B_oa,   F_aa = B_aa + F_ab M^-1
 ///     F_ba
 ///
-/// Nothing when the two do not determine it.
+/// Returns std::nullopt when the two do not determine it.
 std::optional<ChainLink> link_between(const Pair& before, const Pair& after);
 
 /// Returns the link that a sender computes itself: p(before, after | all) / p(before | until then).

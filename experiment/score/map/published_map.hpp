@@ -28,7 +28,7 @@ class PublishedMaps {
   /// Throws std::runtime_error when the log cannot be read or has no message on this channel.
   PublishedMaps(const std::string& log, std::string channel);
 
-  /// Returns the last map published up to a simulated time; `at_s` must not decrease.  None after the end
+  /// Returns the last map published up to a simulated time; `at_s` must not decrease.  std::nullopt after the end
   /// of the log.  Throws std::runtime_error when it cannot be decoded, and before the first map.
   std::optional<GridMap> at(double at_s);
 

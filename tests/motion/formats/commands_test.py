@@ -125,7 +125,7 @@ sounds: [{at_s: 0.5, sound: bark}]
         ran = self.motion("import", "none.mtn", "--output", "bad.yaml", code=4)
         self.assertIn("none.mtn: does not exist", ran.stderr)
         ran = self.motion("export", "sway.yaml", "--output", "sway.xyz", code=2)
-        self.assertIn("--format: is needed, because 'sway.xyz' has the ending of no format", ran.stderr)
+        self.assertIn("--format: is needed, because 'sway.xyz' does not have the ending of a known format", ran.stderr)
         ran = self.motion("export", "sway.yaml", "--output", "sway.skill", code=2)
         self.assertIn("has no number from 0 to 15 in OpenCat", ran.stderr)
 

@@ -44,7 +44,7 @@ TEST(Water, ThatIsLighterBelowThanAboveIsWarnedOfOnce) {
       "water: {profile: [{depth_m: 0, density_kgpm3: 1025}, {depth_m: 20, density_kgpm3: 1020}, {depth_m: 40, "
       "density_kgpm3: 1015}]}");
   const std::string text = log.text();
-  EXPECT_THAT(text, testing::EndsWith("'profile' is lighter at 20 m than above: such water would overturn\n"));
+  EXPECT_THAT(text, testing::EndsWith("'profile' is lighter at 20 m than above it: such water would overturn\n"));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1);
 }
 

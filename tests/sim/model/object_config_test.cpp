@@ -34,7 +34,7 @@ TEST(ObjectConfig, HasEitherPartsOrBodies) {
            {parts + ", " + bodies, "needs either 'parts' or 'bodies', not both"},
            {"parts: []", "'parts' must have at least one part"},
            {parts + ", self_collision: true", "'self_collision' goes with 'bodies'"},
-           {bodies + ", fixed: true", "'fixed' goes with 'parts'"}}) {
+           {bodies + ", fixed: true", "'fixed' needs 'parts'"}}) {
     sim::ObjectConfig object;
     EXPECT_THAT(errors_of("{name: crate, " + keys + "}", object), Contains(HasSubstr(text))) << keys;
   }

@@ -31,7 +31,7 @@ TEST(LogIndex, SaysWhatALogLacks) {
     FAIL();
   } catch (const std::runtime_error& error) {
     EXPECT_THAT(error.what(), HasSubstr("empty.lcm: has neither sim.scene nor sim.bodies"));
-    EXPECT_THAT(error.what(), HasSubstr("`shoal view " + path + " --resimulate` runs its world again, and shows it"));
+    EXPECT_THAT(error.what(), HasSubstr("`shoal view " + path + " --resimulate` re-simulates and shows its world"));
   }
 }
 

@@ -123,12 +123,10 @@ int new_program(const NewArguments& arguments) {
 CLI::App* add_kind(CLI::App& command, const char* kind, const char* meaning, NewArguments& arguments) {
   CLI::App* of_kind = command.add_subcommand(kind, meaning);
   add_log_level_option(*of_kind);
-  of_kind->add_option("NAME", arguments.name, "name, and name of what is written")
+  of_kind->add_option("NAME", arguments.name, "name of the world, vehicle or program, and of its file or folder")
       ->required()
       ->check(CLI::Validator(check_name, ""));
-  of_kind->add_option("--folder", arguments.folder, "where the file is written")
-      ->type_name("DIR")
-      ->capture_default_str();
+  of_kind->add_option("--folder", arguments.folder, "folder to write to")->type_name("DIR")->capture_default_str();
   return of_kind;
 }
 
@@ -139,7 +137,7 @@ static void add_new_command(CLI::App& app, int& exit_code) {
   command->require_subcommand(1);
   const auto arguments = std::make_shared<NewArguments>();
   // World.
-  CLI::App* world = add_kind(*command, "world", "A world of one vehicle", *arguments);
+  CLI::App* world = add_kind(*command, "world", "A world with one vehicle", *arguments);
   world
       ->add_option("--vehicle", arguments->vehicle,
                    "vehicle file, relative to the world; unset: a shipped rover or AUV")
@@ -153,7 +151,8 @@ static void add_new_command(CLI::App& app, int& exit_code) {
                                       {}});
   world->callback([arguments, &exit_code] { exit_code = new_world(*arguments); });
   // Vehicle.
-  CLI::App* vehicle = add_kind(*command, "vehicle", "A rover of two driven wheels with a lidar, or an AUV", *arguments);
+  CLI::App* vehicle =
+      add_kind(*command, "vehicle", "A rover with two driven wheels and a lidar, or an AUV", *arguments);
   vehicle->add_flag("--under-water", arguments->under_water, "an AUV instead of a rover");
   command_line::set_help_end(*vehicle,
                              {{"shoal new vehicle digger", "shoal new vehicle fish --under-water"}, exit_codes, {}});

@@ -83,7 +83,7 @@ std::string word_of(motion::ConnectionKind kind) {
     case motion::ConnectionKind::by_stance:
       return "by the stance at the start of the run";
     case motion::ConnectionKind::searched:
-      return "by a pose that was searched";
+      return "by a pose found by search";
     case motion::ConnectionKind::none:
       break;
   }
@@ -148,7 +148,7 @@ void add_motion_connect_command(CLI::App& motion, int& exit_code) {
       ->check(whole_from(0, 1000));
   command
       ->add_option("--velocity", options.velocity,
-                   "mean velocity of the joint with the longest way on the straight connection, rad/s; default 1")
+                   "mean velocity of the joint that moves farthest on the straight connection, rad/s; default 1")
       ->check(number_from(0.01, 100));
   command->add_option("--settle", options.settle_s, "time after a motion in which it may still fall, s; default 1")
       ->check(number_from(0, 600));
@@ -169,8 +169,8 @@ void add_motion_connect_command(CLI::App& motion, int& exit_code) {
         {1, "none was found"},
         {2, "wrong usage or configuration"},
         {4, "file error"}},
-       {"Tried in this order: straight from pose to pose; the same slower; by the stance at the start of the run; "
-        "then a search for a pose on the way and its times.  It arrives when all joints are within 2 degrees of their "
+       {"The attempts, in this order: straight from pose to pose; the same slower; by the stance at the start of the "
+        "run; by a pose found by search, with its times.   It arrives when all joints are within 2 degrees of their "
         "ends and it stands still; it falls when it tilts by more than 45 degrees or its first body touches something, "
         "except where it does so at one of the ends."}});
   command->callback([arguments, &exit_code] { exit_code = connect(*arguments); });

@@ -24,7 +24,8 @@ const motion::MotionFormat& format_of(const ExportArguments& arguments) {
                                                  ? motion::motion_format_of_file(arguments.output, "")
                                                  : motion::find_motion_format(arguments.format);
   if (format == nullptr)
-    throw CLI::ValidationError("--format", "is needed, because '" + arguments.output + "' has the ending of no format");
+    throw CLI::ValidationError(
+        "--format", "is needed, because '" + arguments.output + "' does not have the ending of a known format");
   return *format;
 }
 
@@ -97,7 +98,7 @@ void add_motion_export_command(CLI::App& motion, int& exit_code) {
                                          {2, "wrong usage, or the format cannot hold the motion"},
                                          {4, "file error"}},
                                         {formats_text(false),
-                                         "What the file does not keep is printed, each on its own line.  "
+                                         "Whatever the file cannot hold is printed, each on its own line.  "
                                          "docs/guides/motion_formats.md describes the formats."}});
   command->callback([arguments, at, &exit_code] {
     arguments->has_instant = at->count() > 0;

@@ -114,18 +114,18 @@ void add_motion_import_command(CLI::App& motion, int& exit_code) {
   add_format_options(*command, *arguments);
   command->get_option("--name")->description("play_motion2, opencat: which of several motions in the file to read");
   command_line::set_help_end(
-      *command, {{"shoal motion import wave.mtn --vehicle ers7 --output wave.yaml",
-                  "shoal motion import walk.yaml --format ros --output walk_motion.yaml",
-                  "shoal motion import skills.h --format opencat --name hi --vehicle bittle --output hi.yaml"},
-                 {{0, "success"},
-                  {1, "with --strict: part of the file cannot be kept"},
-                  {2, "wrong usage, or an error in the file"},
-                  {4, "file error"}},
-                 {formats_text(true),
-                  "Errors are printed as file:line:column: rule, value; in binary files with the byte number.   "
-                  "What the motion "
-                  "does not keep of the file is printed, each on its own line.  docs/guides/motion_formats.md "
-                  "describes the formats."}});
+      *command,
+      {{"shoal motion import wave.mtn --vehicle ers7 --output wave.yaml",
+        "shoal motion import walk.yaml --format ros --output walk_motion.yaml",
+        "shoal motion import skills.h --format opencat --name hi --vehicle bittle --output hi.yaml"},
+       {{0, "success"},
+        {1, "with --strict: part of the file cannot be kept"},
+        {2, "wrong usage, or an error in the file"},
+        {4, "file error"}},
+       {formats_text(true),
+        "Errors are printed as file:line:column: rule, value; in binary files with the byte number.   "
+        "Whatever the motion cannot hold of the file is printed, each on its own line.  docs/guides/motion_formats.md "
+        "describes the formats."}});
   command->callback([arguments, &exit_code] { exit_code = import_motion(*arguments); });
 }
 

@@ -255,7 +255,7 @@ void add_image_command(CLI::App& app, int& exit_code) {
   command_line::set_help_end(*command, {{"shoal log image run.lcm auv1.side_scan --png side_scan.png",
                                          "shoal log image run.lcm rover1.camera --at 12.5 --png seen.png"},
                                         log_codes,
-                                        {"All side scans or multibeam pings are drawn in one image; of other sensors "
+                                        {"All side scans or multibeam pings are drawn in one image; for other sensors "
                                          "one message is drawn.  All except camera images need gnuplot."}});
   command->callback([arguments, &exit_code] { exit_code = image(*arguments); });
 }

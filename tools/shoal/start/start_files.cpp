@@ -107,7 +107,7 @@ metrics:
 #   - {name: pilot, client: pilot, command: [pilot/build/pilot]}  # as of `shoal new program pilot`
 )";
 
-constexpr const char* vehicle_text = R"(# NAME: a vehicle to begin with, a rover of two driven wheels with a lidar.
+constexpr const char* vehicle_text = R"(# NAME: a vehicle to begin with, a rover with two driven wheels and a lidar.
 #   shoal check NAME.yaml                              every mistake, with line and column
 #   shoal new world yard --vehicle NAME.yaml           a world with it
 # Every key, with its default: shoal describe vehicle, shoal list devices, shoal describe lidar.

@@ -31,7 +31,7 @@ std::string values_of(const experiment::Tuning& tuning, const experiment::TunedP
   return experiment::values_text(tuning.study().config, tuning.study().points[point.point]);
 }
 
-/// Returns `a rule of its world does not hold in 2 of 4 runs`; empty: in none.
+/// Returns `a rule of its world fails in 2 of 4 runs`; empty: in none.
 std::string failed_text(const experiment::TunedPoint& point) {
   if (point.failed == 0) return {};
   return fmt::format("a rule of its world fails in {} of {} runs", point.failed, point.runs);

@@ -13,7 +13,7 @@ namespace tools {
 std::vector<sim::Vector3d> outermost_points(const std::vector<sim::Vector3d>& points);
 
 /// Returns the convex hull as a closed mesh that faces outwards, by insertion of one point after the other: time grows
-/// with the square of their number.  Nothing when the points lie in one plane.
+/// with the square of their number.  std::nullopt when the points lie in one plane.
 std::optional<sim::Mesh> convex_hull(const std::vector<sim::Vector3d>& points);
 
 }  // namespace tools
