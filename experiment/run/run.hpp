@@ -12,7 +12,6 @@
 #include "bridges/view/view_publisher.hpp"
 #include "experiment/results/results.hpp"
 #include "experiment/run/branch_log.hpp"
-#include "experiment/run/pacer.hpp"
 #include "experiment/run/run_buses.hpp"
 #include "experiment/run/run_inputs.hpp"
 #include "experiment/run/run_key_file.hpp"
@@ -23,6 +22,7 @@
 #include "experiment/run/time_control.hpp"
 #include "experiment/score/scoring.hpp"
 #include "experiment/terminal/progress.hpp"
+#include "experiment/time/pacer.hpp"
 #include "sim/base/shared_work.hpp"
 #include "sim/run/run_control.hpp"
 
