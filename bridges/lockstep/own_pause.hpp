@@ -22,7 +22,7 @@ class OwnPause {
     requests_ = control_.pause_requests;
     ++control_.changes;
   }
-  /// Ends the pause.  Returns whether the world goes on; it does not when a user has paused it since.
+  /// Ends the pause.  Returns whether the world continues; it does not when a user has paused it since.
   bool end() {
     if (!holds_) return false;
     holds_ = false;

@@ -38,7 +38,7 @@ namespace experiment {
 ///   synchronize   ticks to the lockstep clients; waits for their answers, executing requests
 ///
 /// A request may move the world in time while it is executed.  TimeControl then calls leave_branch() before the move
-/// and start_branch() after it (hold_here() if it failed), and the loop goes on in the new branch, at synchronize().
+/// and start_branch() after it (hold_here() if it failed), and the loop continues in the new branch, at synchronize().
 /// Whatever ends the run early is thrown (RunError, PhysicsFault, LockstepTimeout), and becomes the exit code in go();
 /// finish() then says goodbye to the clients, stops the programs and writes the results in any case.
 class Run final : private Timeline {

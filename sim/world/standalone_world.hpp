@@ -11,7 +11,7 @@ struct StandaloneBus {
   InProcessBus own_bus;  ///< of the world and all vehicles
 };
 
-/// World on a bus of its own inside the process, for code that steps it without programs, pages and records.
+/// World with its own bus inside the process, for code that steps it without programs, pages and records.
 class StandaloneWorld : public StandaloneBus, public World {
  public:
   /// `config` must outlive the world.  Throws ConfigError as World does.

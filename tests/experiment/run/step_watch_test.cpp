@@ -13,7 +13,7 @@ std::optional<std::string> limit_of_a_step(const std::string& limits) {
   watch.begin();
   run.step(1);
   watch.end();
-  EXPECT_FALSE(watch.take_warning()) << "a crate alone is no slow physics";
+  EXPECT_FALSE(watch.take_warning()) << "a crate alone is not slow";
   return watch.beyond_limit();
 }
 
