@@ -39,7 +39,8 @@ void BranchPrograms::start() {
   parts_.service.publish_info();
   parts_.service.publish_step();
   parts_.buses.end_of_step();
-  programs_ = std::make_unique<experiment::RunPrograms>(options_, parts_, *this, "");
+  bridges::TimeMachine& time = *this;  // its private base
+  programs_ = std::make_unique<experiment::RunPrograms>(options_, parts_, time, "");
   synchronized_ = begun_ = false;
   set_acting(false);
   try {
