@@ -256,7 +256,7 @@ void LockstepService::remove_all(const std::string& why) {
   requests_.take_all();
   dropped_.clear();
   followers_.clear();
-  paused_here_ = false;
+  own_pause_.forget();
 }
 
 void LockstepService::discard(const std::string& client, const std::string& why) {

@@ -205,7 +205,7 @@ void LockstepService::take_ack(int link_index, const sim::Message& message) {
     }
     // Expect the listed messages, also those for other clients or for the record only.
     if (!ack.listed) {
-      if (link.is_recorded) note_not_recorded(ack.client, "", "its answers list nothing");
+      if (link.is_recorded) record_gaps_.add(ack.client, "", "its answers list nothing");
       return;
     }
     open_channels(link_index, ack);
@@ -235,7 +235,7 @@ void LockstepService::open_channels(int link_index, const shoal::sim_ack_t& ack)
     if (why_not == nullptr)
       link.passed_on.emplace(channel, link.gate.open_mailbox(channel));
     else
-      note_not_recorded(ack.client, channel, why_not);
+      record_gaps_.add(ack.client, channel, why_not);
   }
 }
 
@@ -272,30 +272,8 @@ bool LockstepService::do_without(const sim::LockstepMember& member) {
 void LockstepService::give_up(const sim::LockstepMember& member) {
   sim::ClientMessages& messages = link_of(member.link).messages;
   for (const std::string& channel : messages.missing_channels(member.name))
-    if (is_only_recorded(member.link, channel)) note_not_recorded(member.name, channel, did_not_arrive);
+    if (is_only_recorded(member.link, channel)) record_gaps_.add(member.name, channel, did_not_arrive);
   messages.give_up(member.name);
-}
-
-void LockstepService::note_not_recorded(const std::string& client, const std::string& channel, const char* why) {
-  constexpr std::size_t max_noted = 1000;
-  if (not_recorded_.size() >= max_noted && !not_recorded_.contains({client, channel})) return;
-  NotRecorded& noted = not_recorded_[{client, channel}];
-  ++noted.messages;
-  noted.why = why;
-}
-
-std::vector<std::string> LockstepService::not_recorded() const {
-  std::vector<std::string> phrases;
-  for (const auto& [place, noted] : not_recorded_) {
-    const auto& [client, channel] = place;
-    const std::string of = " of client '" + sim::printable(sim::shortened(client)) + "'";
-    phrases.push_back((channel.empty()
-                           ? "messages" + of + " on channels that nothing reads"
-                           : std::to_string(noted.messages) + (noted.messages == 1 ? " message" : " messages") + of +
-                                 " on '" + sim::printable(sim::shortened(channel)) + "'") +
-                      " (" + noted.why + ")");
-  }
-  return phrases;
 }
 
 /// Compares the answers to a tick, because a forged one may arrive before that of the client.

@@ -26,7 +26,7 @@ constexpr milliseconds delivery_window{50};
 
 LockstepService::LockstepService(sim::World& world, sim::RunControl& control, const std::vector<LockstepBus>& buses,
                                  bool posts_messages)
-    : world_(world), control_(control), posts_messages_(posts_messages) {
+    : world_(world), control_(control), own_pause_(control), posts_messages_(posts_messages) {
   for (const LockstepBus& bus : buses) add_link(bus);
   const sim::LockstepConfig& config = world.config().lockstep;
   defaults_.on_timeout = config.on_timeout;
@@ -119,7 +119,7 @@ void LockstepService::set_branch(std::int32_t branch) {
   for (const auto& link : links_) link->messages.clear();
   pending_.clear();
   for (auto& [client, answers] : answers_) answers.set_branch();
-  paused_here_ = false;
+  own_pause_.forget();
 }
 
 void LockstepService::drop_overflowing() {
@@ -161,17 +161,8 @@ LockstepOutcome LockstepService::synchronize(const Wait& wait, const std::functi
   }
   pending_.clear();
   report_repeated();
-  resume();
+  if (own_pause_.end()) sim::log_info("lockstep: the world continues");
   return LockstepOutcome::done;
-}
-
-void LockstepService::resume() {
-  if (!paused_here_) return;
-  paused_here_ = false;
-  if (control_.pause_requests != pause_requests_) return;  // another client paused it
-  control_.paused = false;
-  ++control_.changes;
-  sim::log_info("lockstep: the world continues");
 }
 
 milliseconds LockstepService::nap(const std::vector<std::string>& late) const {
@@ -218,7 +209,7 @@ void LockstepService::report_repeated() {
 /// Suspends the time-outs while a user has paused the world.
 void LockstepService::rest_time_outs(Clock::time_point now) {
   const auto passed = now - std::exchange(served_, now);
-  if (!control_.paused || control_.single_steps > 0 || paused_here_) return;
+  if (!control_.paused || control_.single_steps > 0 || own_pause_.holds()) return;
   for (auto& [client, requested] : pending_) requested.begin = std::min(now, requested.begin + passed);
 }
 
@@ -284,13 +275,9 @@ void LockstepService::check_time(const std::string& client, Pending& requested, 
     case sim::OnTimeout::pause:
       if (!requested.reported) {
         sim::log_warn("lockstep: {}; the world pauses", why);
-        if (!control_.paused) {
-          paused_here_ = control_.paused = true;
-          pause_requests_ = control_.pause_requests;
-          ++control_.changes;
-        }
+        own_pause_.start();
       } else if (!control_.paused) {
-        paused_here_ = false;
+        own_pause_.forget();
         drop(client, why);
         return;
       }

@@ -21,6 +21,8 @@
 #include "bridges/lockstep/client_requests.hpp"
 #include "bridges/lockstep/control_guard.hpp"
 #include "bridges/lockstep/lockstep_summary.hpp"
+#include "bridges/lockstep/own_pause.hpp"
+#include "bridges/lockstep/record_gaps.hpp"
 #include "shoal/sim_ack_t.hpp"
 #include "shoal/sim_control_request_t.hpp"
 #include "sim/bus/bus.hpp"
@@ -54,6 +56,20 @@ struct LockstepBus {
 /// Lockstep protocol on the buses: sends sim.tick, receives sim.ack, and requests and repeats messages on sim.resend
 /// and sim.resent, so that neither a tick nor a message between world and client is lost.  See
 /// docs/develop/lockstep_protocol.md.
+///
+/// It connects parts that each know one side of the protocol.  sim::Lockstep knows the members, their periods, and what
+/// each must get with its next tick; it knows neither time nor buses.  A Link is a bus: its mailboxes for the
+/// handshake, and sim::ClientMessages, which puts what clients have published at the gate in the order of their
+/// answers.  Requests of clients that change the world wait in ClientRequests until all who are due have spoken, so
+/// that their order does not depend on the network.  AnswerHistory finds contradictory answers, ControlGuard checks
+/// signatures, OwnPause and RecordGaps keep what on_timeout and the record need.
+///
+/// synchronize() is a loop over the clients that are late: tick those that have no tick of this step, ask those again
+/// whose answers or messages are missing, at growing intervals, and check their time-outs by Pending; in between it
+/// waits for the network, and `idle` lets the run answer requests.  Members come and go while it waits, by join() and
+/// leave(), which SimService calls for requests on sim.control: nothing may be kept from before a call of `idle`.
+/// After a rewind set_branch() forgets what was asked for on the old branch; a client that has not answered a tick of
+/// it gets that tick until it has, and only then those of the new branch.
 class LockstepService {
  public:
   /// Flushes published messages, and waits for messages up to the given time, or returns earlier.
@@ -150,9 +166,8 @@ class LockstepService {
   std::uint64_t dropped_messages() const;
   /// Returns the summaries by name, including former clients, up to 2000.
   std::vector<LockstepSummary> summaries() const;
-  /// Returns what clients published and the record lacks, one phrase for each client and channel, such as `50 messages
-  /// of client 'pilot' on 'sim.note' (channels of the simulator)`.  Only with recorded buses.
-  std::vector<std::string> not_recorded() const;
+  /// Returns what clients published and the record lacks, as RecordGaps::phrases().  Only with recorded buses.
+  std::vector<std::string> not_recorded() const { return record_gaps_.phrases(); }
 
   /// Returns what the clients did with each channel, including former clients.
   ChannelUse channel_use() const;
@@ -207,7 +222,6 @@ class LockstepService {
   void discard(const std::string& client, const std::string& why);
   void report_who_left(const sim::LockstepMember& member, int link, const sim::LeaveTerms& terms);
   void notify_dropped(const Dropped& dropped, const std::string& client);
-  void resume();
 
   void rest_time_outs(Clock::time_point now);
   void report_repeated();
@@ -229,7 +243,6 @@ class LockstepService {
   bool do_without(const sim::LockstepMember& member);
   /// Stops waiting for the missing messages of a client.
   void give_up(const sim::LockstepMember& member);
-  void note_not_recorded(const std::string& client, const std::string& channel, const char* why);
   void take_request(int link, const sim::Message& message);
   void take_bundle(int link, const sim::Message& message);
   void compare_answers(const shoal::sim_ack_t& ack, const std::string& signer);
@@ -264,14 +277,9 @@ class LockstepService {
   ClientRequests requests_;
   std::map<std::string, AnswerHistory, std::less<>> answers_;  // of the clients in the lockstep
   Contradiction contradiction_;
-  struct NotRecorded {
-    std::int64_t messages = 0;
-    const char* why;
-  };
-  std::map<std::pair<std::string, std::string>, NotRecorded> not_recorded_;  // by client and channel
+  RecordGaps record_gaps_;
   ChannelUse use_;  // published by all clients, subscribed by former ones
-  bool paused_here_ = false;
-  std::int64_t pause_requests_ = 0;  // RunControl::pause_requests at that time
+  OwnPause own_pause_;
   bool suspended_ = false;
   const bool posts_messages_;
   std::int32_t branch_ = 0;

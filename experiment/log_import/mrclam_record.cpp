@@ -10,20 +10,14 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "bridges/control/sim_service.hpp"
-#include "bridges/lockstep/lockstep_service.hpp"
-#include "bridges/log/recording_bus.hpp"
-#include "bridges/log/run_journal.hpp"
 #include "experiment/results/run_record.hpp"
-#include "experiment/run/version.hpp"
+#include "experiment/run/run_parts.hpp"
 #include "experiment/snapshot/run_identity.hpp"
 #include "messages/yaml/message_writer.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/odometry_t.hpp"
 #include "shoal/swarm_position_t.hpp"
 #include "sim/base/math.hpp"
-#include "sim/bus/in_process_bus.hpp"
-#include "sim/run/run_control.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
 
@@ -81,36 +75,28 @@ class ImportedRun {
       : data_(data),
         start_s_(start_of_data(data)),
         loaded_(load(mrclam_world(data), log)),
-        recorder_(network_, log, loaded_.config.epoch_us,
-                  overwrite ? bridges::Existing::overwrite : bridges::Existing::refuse),
-        gate_(recorder_),
-        world_(loaded_.config, gate_),
-        journal_(gate_, world_, ports_),
-        lockstep_(world_, control_),
-        service_(gate_, network_, world_, control_, lockstep_,
-                 {sim::to_yaml(loaded_.resolved), version_text(), build_text(), files_text(loaded_.resolved)},
-                 {.journal = &journal_}),
+        parts_(loaded_, options(log, overwrite), {.files = files_text(loaded_.resolved)}),
         sources_(data.robots.size()) {}
 
   MrclamRecord go() {
-    service_.publish_info();
-    journal_.start();
-    service_.publish_step();
-    journal_.after_step();
+    parts_.service.publish_info();
+    parts_.journal.start();
+    parts_.service.publish_step();
+    parts_.journal.after_step();
     const auto steps = static_cast<std::int64_t>(std::llround(loaded_.config.run.duration_s / mrclam_step_s));
     for (std::int64_t i = 0; i < steps; ++i) {
-      recorder_.set_time(world_.now());
+      parts_.buses.set_time(world().now());
       publish();
       move();
-      journal_.admitted("", gate_.admit());
-      world_.step();
-      service_.publish_step();
-      journal_.after_step();
+      parts_.journal.admitted("", parts_.buses.gate().admit());
+      world().step();
+      parts_.service.publish_step();
+      parts_.journal.after_step();
     }
-    journal_.finish();
-    recorder_.close();
-    if (const auto error = recorder_.error()) throw std::runtime_error(*error);
-    record_.duration_s = sim::to_seconds(world_.now());
+    parts_.journal.finish();
+    parts_.buses.close_record();
+    if (const auto error = parts_.buses.record_error()) throw std::runtime_error(*error);
+    record_.duration_s = sim::to_seconds(world().now());
     return record_;
   }
 
@@ -127,11 +113,22 @@ class ImportedRun {
     return sim::load_world_text(world, log + ": world", options);
   }
 
+  static RunOptions options(const std::string& log, bool overwrite) {
+    RunOptions run;
+    run.bus = "none";
+    run.record = log;
+    run.overwrite = overwrite;
+    run.special_files = true;
+    run.serial_ports = false;
+    return run;
+  }
+
+  sim::World& world() { return parts_.world; }
   std::int64_t utime(double time_s) const { return std::llround(time_s * 1e6); }
 
   /// Puts the robots where they are at the end of the step.
   void move() {
-    const double time_s = start_s_ + sim::to_seconds(world_.now() + world_.step_time());
+    const double time_s = start_s_ + sim::to_seconds(world().now() + world().step_time());
     shoal::sim_control_request_t request{};
     request.client = "import";
     request.command = "do";
@@ -141,12 +138,12 @@ class ImportedRun {
           fmt::format("- {{move: {{name: {}, position_m: [{:.6f}, {:.6f}, 0], rpy_deg: [0, 0, {:.6f}]}}}}\n",
                       robot_name(i), pose.x_m, pose.y_m, sim::radians_to_degrees(sim::wrap_angle(pose.yaw_rad)));
     }
-    service_.execute_local(request, nullptr);
+    parts_.service.execute_local(request, nullptr);
   }
 
   /// Publishes what the robots had measured by now.
   void publish() {
-    const double now_s = start_s_ + sim::to_seconds(world_.now());
+    const double now_s = start_s_ + sim::to_seconds(world().now());
     for (std::size_t i = 0; i < data_.robots.size(); ++i) {
       const MrclamData::Robot& robot = data_.robots[i];
       Source& source = sources_[i];
@@ -175,7 +172,7 @@ class ImportedRun {
     message.theta_rad = source.theta_rad;
     message.forward_mps = odometry.forward_mps;
     message.turn_radps = odometry.turn_radps;
-    gate_.publish(robot_name(robot) + ".odometry", shoal::encode(message), world_.now());
+    parts_.buses.outer().publish(robot_name(robot) + ".odometry", shoal::encode(message), world().now());
     ++record_.odometries;
   }
 
@@ -187,22 +184,14 @@ class ImportedRun {
     message.relative_m.push_back({measurement.range_m * std::cos(measurement.bearing_rad),
                                   measurement.range_m * std::sin(measurement.bearing_rad), 0});
     message.absolute_m.push_back({std::nan(""), std::nan(""), std::nan("")});
-    gate_.publish(robot_name(robot) + ".swarm_position", shoal::encode(message), world_.now());
+    parts_.buses.outer().publish(robot_name(robot) + ".swarm_position", shoal::encode(message), world().now());
     ++record_.measurements;
   }
 
   const MrclamData& data_;
   const double start_s_;
   sim::LoadedWorld loaded_;
-  sim::InProcessBus network_;
-  bridges::RecordingBus recorder_;
-  sim::MessageGate gate_;
-  bridges::JournalPorts ports_;
-  sim::RunControl control_;
-  sim::World world_;
-  bridges::RunJournal journal_;
-  bridges::LockstepService lockstep_;
-  bridges::SimService service_;
+  RunParts parts_;
   std::vector<Source> sources_;
   MrclamRecord record_;
 };

@@ -196,7 +196,7 @@ class LogScoring {
       publish_estimates();
       scoring_.after_step();
       exports_->after_step();
-      progress.update(world.now(), 0, replayed_.control(), false);
+      progress.update(world.now(), 0, replayed_.parts().control, false);
     }
     progress.clear();
     exports_->finish(scoring_);

@@ -4,7 +4,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <cstring>
 #include <stdexcept>
 
 #include "bridges/log/run_journal.hpp"
@@ -68,28 +67,19 @@ ReplayedWorld::ReplayedWorld(const ReplayLog& log, const Options& options, Watch
       watch_(std::move(watch)),
       inputs_(options.inputs),
       for_programs_(options.for_programs.has_value()),
-      buses_(loaded_.config, bus_options(options)),
-      main_(buses_.outer(), tap()),
-      others_(make_others()),
-      other_simulators_(buses_.networks(), false),
-      world_(loaded_.config, main_, serial_.opener(),
-             [this](const std::string& name) -> sim::Bus& { return *others_.at(name); }),
-      journal_(unread_, world_, no_ports_, [] { return false; }),
-      lockstep_(world_, control_, lockstep_buses()),
-      service_(main_, buses_.network(), world_, control_, lockstep_,
-               {sim::to_yaml(loaded_.resolved), version_text(), build_text(), log_.info.files}, service_links()) {
+      parts_(loaded_, bus_options(options), parts_options()) {
   if (for_programs_) {
-    buses_.set_muted(true);
+    parts_.buses.set_muted(true);
     read_programs(loaded_, {true, options.load.allow_paths});
-    journal_.set_listener([this](std::int64_t step, const RunJournal::Input& input) {
+    parts_.journal.set_listener([this](std::int64_t step, const RunJournal::Input& input) {
       if (live_) own_inputs_.push_back({step, input.bus, input.channel, input.payload});
     });
-    journal_.start();
+    parts_.journal.start();
   }
   check_times();
   restore(options.load.sets.empty() && options.world.empty());
-  world_.use_threads(options.threads);
-  add_serial_inputs(world_.step_number());
+  parts_.world.use_threads(options.threads);
+  add_serial_inputs(parts_.world.step_number());
 }
 
 /// Gives the ports the bytes from a step on.
@@ -100,48 +90,28 @@ void ReplayedWorld::add_serial_inputs(std::int64_t from_step) {
       serial_.add(input);
 }
 
-TapBus::Listener ReplayedWorld::tap() {
-  return [this](std::string_view channel, std::span<const std::byte> payload, sim::Time) {
+RunParts::Options ReplayedWorld::parts_options() {
+  RunParts::Options parts;
+  parts.files = log_.info.files;
+  parts.tap = [this](std::string_view channel, std::span<const std::byte> payload, sim::Time) {
     if (watch_) watch_(channel, payload);
   };
-}
-
-std::map<std::string, std::unique_ptr<TapBus>> ReplayedWorld::make_others() {
-  std::map<std::string, std::unique_ptr<TapBus>> others;
-  for (const sim::BusConfig& bus : loaded_.config.buses)
-    others.emplace(bus.name, std::make_unique<TapBus>(buses_.of(bus.name), tap()));
-  return others;
-}
-
-/// Without programs no client joins.
-std::vector<bridges::LockstepBus> ReplayedWorld::lockstep_buses() {
-  if (!for_programs_) return {};
-  std::vector<bridges::LockstepBus> all{{buses_.network(), buses_.gate()}};
-  for (const sim::BusConfig& bus : loaded_.config.buses)
-    all.push_back({buses_.network(bus.name), buses_.gate(bus.name), bus.name});
-  return all;
-}
-
-bridges::ServiceLinks ReplayedWorld::service_links() {
-  if (!for_programs_) return {};
-  bridges::ServiceLinks links{&journal_, &other_simulators_};
-  for (const sim::BusConfig& bus : loaded_.config.buses) links.vehicle_buses.push_back(&buses_.network(bus.name));
-  return links;
-}
-
-std::optional<std::string> ReplayedWorld::another_simulator() {
-  return other_simulators_.look([this](std::chrono::milliseconds time) { buses_.wait(time); });
+  parts.taps = RunBuses::Tap::published;  // also while the programs are not started
+  parts.ports = serial_.opener();
+  parts.journal = &unread_;
+  parts.has_clients = for_programs_;
+  return parts;
 }
 
 void ReplayedWorld::check_times() const {
-  if (world_.step_time().count() != log_.info.step_us)
+  if (parts_.world.step_time().count() != log_.info.step_us)
     throw std::runtime_error(
         fmt::format("{}: its run has steps of {} us, the world here of {} us: there is nothing to "
                     "compare",
-                    log_.path, log_.info.step_us, world_.step_time().count()));
-  if (world_.epoch_us() != log_.info.epoch_utime)
+                    log_.path, log_.info.step_us, parts_.world.step_time().count()));
+  if (parts_.world.epoch_us() != log_.info.epoch_utime)
     throw std::runtime_error(fmt::format("{}: its run has the epoch {}, the world here {}: all stamps would differ",
-                                         log_.path, log_.info.epoch_utime, world_.epoch_us()));
+                                         log_.path, log_.info.epoch_utime, parts_.world.epoch_us()));
   if (!log_.bad_snapshot.empty() && !log_.snapshot && log_.usable_step() < log_.last_step)
     throw std::runtime_error(log_.path + ": cannot be replayed: " + log_.bad_snapshot);
   if (log_.proven_step && *log_.proven_step <= log_.begin_step() && log_.usable_step() < log_.last_step)
@@ -156,38 +126,38 @@ void ReplayedWorld::restore(bool same_world) {
   const std::string who = log_.path + ": sim.snapshot";
   check_version(*log_.snapshot, who, short_version());
   try {
-    world_.state().restore(log_.snapshot->state);
+    parts_.world.state().restore(log_.snapshot->state);
     auto owners = sim::StateArchive::restorer(log_.snapshot->owners);
     owners.section("owners");
-    service_.visit_state(owners);
+    parts_.service.visit_state(owners);
     owners.end();
   } catch (const sim::SnapshotError& error) {
     throw std::runtime_error(who + ": " + error.what());
   }
-  if (same_world && world_.state().hash() != log_.snapshot->state_hash)
+  if (same_world && parts_.world.state().hash() != log_.snapshot->state_hash)
     throw std::runtime_error(who + ": its state hash after restoring differs from the one that was written");
 }
 
 void ReplayedWorld::start() {
   deliver(RunJournal::before_first_reports);
-  service_.publish_step();
+  parts_.service.publish_step();
 }
 
 void ReplayedWorld::step() {
-  if (for_programs_) journal_.begin_step();
-  deliver(world_.step_number());
+  if (for_programs_) parts_.journal.begin_step();
+  deliver(parts_.world.step_number());
   int link = 0;
   admit("", link);
-  for (const auto& [name, other] : others_) admit(name, ++link);
-  serial_.begin_step(world_.step_number());
-  world_.step();
-  service_.publish_step();
-  if (for_programs_) journal_.after_step();
+  for (const sim::BusConfig& bus : loaded_.config.buses) admit(bus.name, ++link);
+  serial_.begin_step(parts_.world.step_number());
+  parts_.world.step();
+  parts_.service.publish_step();
+  if (for_programs_) parts_.journal.after_step();
 }
 
 /// Delivers the inputs on a bus: those that are due, or those from outside.
 void ReplayedWorld::admit(const std::string& bus, int link) {
-  sim::MessageGate& gate = buses_.gate(bus);
+  sim::MessageGate& gate = parts_.buses.gate(bus);
   std::vector<sim::MessageGate::Delivery>& due = due_[bus];
   const auto pass = [this](std::span<const sim::MessageGate::Delivery> inputs) {
     if (!inputs_) return;
@@ -196,7 +166,7 @@ void ReplayedWorld::admit(const std::string& bus, int link) {
   if (live_) {
     const std::vector<sim::MessageGate::Delivery>& inputs = gate.admit();
     for (const sim::MessageGate::Delivery& input : inputs)
-      own_inputs_.push_back({world_.step_number(), bus, input.channel, input.payload});
+      own_inputs_.push_back({parts_.world.step_number(), bus, input.channel, input.payload});
     return pass(inputs);
   }
   // Afterwards `due` has what programs have published in the meantime.
@@ -204,11 +174,11 @@ void ReplayedWorld::admit(const std::string& bus, int link) {
   for (const sim::MessageGate::Delivery& message : due) spoken_.emplace(link, message.channel);
   due.clear();
   pass(recorded);
-  if (lockstep_.empty()) return;
+  if (parts_.lockstep.empty()) return;
   // What others than its programs sent in the recorded run.
   for (const sim::MessageGate::Delivery& input : recorded)
-    if (lockstep_.has_receiver(input.channel, link) && !spoken_.contains({link, input.channel}))
-      lockstep_.post(link, input.channel, input.payload);
+    if (parts_.lockstep.has_receiver(input.channel, link) && !spoken_.contains({link, input.channel}))
+      parts_.lockstep.post(link, input.channel, input.payload);
 }
 
 bool ReplayedWorld::has_commands() const {
@@ -227,34 +197,9 @@ void ReplayedWorld::restore_inputs() {
   own_inputs_.clear();
 }
 
-sim::Bytes ReplayedWorld::save() {
-  const sim::Bytes state = world_.state().snapshot();
-  auto owners = sim::StateArchive::saver();
-  owners.section("owners");
-  service_.visit_state(owners);
-  owners.end();
-  const sim::Bytes rest = owners.take_bytes();
-  // The state, the owners, and the size of the state at the end.
-  const std::uint64_t size = state.size();
-  sim::Bytes saved = state;
-  saved.insert(saved.end(), rest.begin(), rest.end());
-  const auto* const bytes = reinterpret_cast<const std::byte*>(&size);
-  saved.insert(saved.end(), bytes, bytes + sizeof size);
-  return saved;
-}
-
-void ReplayedWorld::load(const sim::Bytes& saved) {
-  std::uint64_t size = 0;
-  std::memcpy(&size, saved.data() + saved.size() - sizeof size, sizeof size);
-  const auto owners_at = saved.begin() + static_cast<std::ptrdiff_t>(size);
-  world_.state().restore({saved.begin(), owners_at});
-  const sim::Bytes rest(owners_at, saved.end() - sizeof size);
-  auto owners = sim::StateArchive::restorer(rest);
-  owners.section("owners");
-  service_.visit_state(owners);
-  owners.end();
+void ReplayedWorld::repeat_inputs() {
   // The inputs before this step have been delivered.
-  const std::int64_t step = world_.step_number();
+  const std::int64_t step = parts_.world.step_number();
   due_.clear();
   spoken_.clear();
   next_input_ = index_from(log_.inputs, step);
@@ -274,7 +219,7 @@ void ReplayedWorld::deliver(std::int64_t step) {
 void ReplayedWorld::deliver(const ReplayLog::Input& input) {
   if (input.bus == RunJournal::serial_bus) return;
   if (input.bus.empty() && input.channel == RunJournal::request_channel) return execute(input);
-  if (!input.bus.empty() && !others_.contains(input.bus))
+  if (!parts_.buses.has(input.bus))
     return note("the world here has no bus '" + sim::printable(sim::shortened(input.bus)) +
                 "': its inputs are not delivered");
   due_[input.bus].push_back({input.channel, input.payload});
@@ -282,7 +227,7 @@ void ReplayedWorld::deliver(const ReplayLog::Input& input) {
 
 void ReplayedWorld::execute(const ReplayLog::Input& input) {
   try {
-    service_.execute_again(shoal::decode<shoal::sim_control_request_t>(input.payload, shoal::Finite::any));
+    parts_.service.execute_again(shoal::decode<shoal::sim_control_request_t>(input.payload, shoal::Finite::any));
   } catch (const shoal::MessageError& error) {
     note(std::string("a request in the log cannot be read: ") + error.what());
   } catch (const std::exception&) {

@@ -14,18 +14,11 @@
 #include <utility>
 #include <vector>
 
-#include "bridges/control/other_simulators.hpp"
-#include "bridges/control/sim_service.hpp"
-#include "bridges/lockstep/lockstep_service.hpp"
-#include "bridges/log/run_journal.hpp"
 #include "experiment/replay/replay_log.hpp"
 #include "experiment/replay/replay_ports.hpp"
-#include "experiment/run/run_buses.hpp"
-#include "experiment/run/tap_bus.hpp"
+#include "experiment/run/run_parts.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/bus/message_gate.hpp"
-#include "sim/run/run_control.hpp"
-#include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
 
 namespace experiment {
@@ -53,32 +46,27 @@ class ReplayedWorld {
   /// be replayed, sim::ConfigError when the world cannot be built, bridges::BusError.
   ReplayedWorld(const ReplayLog& log, const Options& options, Watch watch = {});
 
-  sim::World& world() { return world_; }
-  const sim::World& world() const { return world_; }
+  sim::World& world() { return parts_.world; }
+  const sim::World& world() const { return parts_.world; }
   const sim::LoadedWorld& loaded() const { return loaded_; }
   /// Bus of the world; what is published on it goes to the watch.
-  sim::Bus& bus() { return main_; }
-  RunBuses& buses() { return buses_; }
-  sim::RunControl& control() { return control_; }
-  const sim::RunControl& control() const { return control_; }
-  bridges::LockstepService& lockstep() { return lockstep_; }
-  bridges::SimService& service() { return service_; }
-  /// Returns the description of another simulator on the buses for programs; none when there is none.
-  std::optional<std::string> another_simulator();
+  sim::Bus& bus() { return parts_.buses.outer(); }
+  RunParts& parts() { return parts_; }
+  const RunParts& parts() const { return parts_; }
 
   /// Delivers the inputs before the first reports and publishes them.  To be called once, before step().
   void start();
   /// Delivers the inputs of the next step and runs it.  Throws sim::PhysicsFault.
   void step();
   /// Executes the requests after the last step.
-  void finish() { deliver(world_.step_number()); }
+  void finish() { deliver(world().step_number()); }
   /// Executes a request that is not in the log, and returns the reply.  Throws std::runtime_error with the reason when
   /// it is refused.
-  std::string request(const shoal::sim_control_request_t& request) { return service_.execute_local(request, nullptr); }
-  /// Saves the present state, and goes back to one that was saved; the inputs since then are delivered again.  Throws
-  /// sim::SnapshotError.
-  sim::Bytes save();
-  void load(const sim::Bytes& saved);
+  std::string request(const shoal::sim_control_request_t& request) {
+    return parts_.service.execute_local(request, nullptr);
+  }
+  /// Delivers the inputs from the present step on again; to be called after the state was set to an earlier one.
+  void repeat_inputs();
   /// Returns whether the record has messages of programs.
   bool has_commands() const;
   /// Drops the inputs at this step and later, for a branch whose programs publish in their place.
@@ -86,16 +74,13 @@ class ReplayedWorld {
   /// Takes all inputs of the record again, and forgets those of the branch.
   void restore_inputs();
   /// Sets whether messages and requests from outside count.  They are kept with the inputs of the record, so that they
-  /// are delivered again after a load().
+  /// are delivered again after repeat_inputs().
   void set_live(bool live) { live_ = live; }
   /// Returns what could not be delivered.
   const std::vector<std::string>& notes() const { return notes_; }
 
  private:
-  TapBus::Listener tap();
-  std::map<std::string, std::unique_ptr<TapBus>> make_others();
-  std::vector<bridges::LockstepBus> lockstep_buses();
-  bridges::ServiceLinks service_links();
+  RunParts::Options parts_options();
   void check_times() const;
   void add_serial_inputs(std::int64_t from_step);
   /// Restores the snapshot with which the run, or the branch, started.
@@ -112,18 +97,8 @@ class ReplayedWorld {
   Watch watch_, inputs_;
   const bool for_programs_;
   ReplayPorts serial_;
-  RunBuses buses_;
-  TapBus main_;
-  std::map<std::string, std::unique_ptr<TapBus>> others_;
-  bridges::OtherSimulators other_simulators_;
-  sim::RunControl control_;
-  sim::World world_;
-  // Writes down the requests of programs; what it publishes is not read.
-  sim::InProcessBus unread_;
-  bridges::JournalPorts no_ports_;
-  bridges::RunJournal journal_;
-  bridges::LockstepService lockstep_;
-  bridges::SimService service_;
+  sim::InProcessBus unread_;  // of the journal, which tells the requests of programs
+  RunParts parts_;
   std::size_t next_input_ = 0, next_own_ = 0;
   std::int64_t end_of_inputs_ = std::numeric_limits<std::int64_t>::max();  // later ones of the record are dropped
   std::vector<ReplayLog::Input> own_inputs_;                               // since then, while live

@@ -27,7 +27,21 @@ void check_record(const std::string& path) {
 
 }  // namespace
 
-RunBuses::RunBuses(const sim::WorldConfig& world, const RunOptions& options, const TapBus::Listener& tap) {
+void RunBuses::Link::close_gate(const TapBus::Listener& listener, Tap taps) {
+  sim::Bus* inner = recorder ? static_cast<sim::Bus*>(recorder.get()) : network.get();
+  const auto add_tap = [&](Tap here) {
+    if (!listener || taps != here) return;
+    tap = std::make_unique<TapBus>(*inner, listener);
+    inner = tap.get();
+  };
+  add_tap(Tap::sent);
+  mute = std::make_unique<MuteBus>(*inner);
+  inner = mute.get();
+  add_tap(Tap::published);
+  gate = std::make_unique<sim::MessageGate>(*inner);
+}
+
+RunBuses::RunBuses(const sim::WorldConfig& world, const RunOptions& options, const TapBus::Listener& tap, Tap taps) {
   main_ = open(options.lcm_url, options);
   if (!options.record.empty() && !options.special_files) check_record(options.record);
   if (!options.record.empty())
@@ -39,7 +53,7 @@ RunBuses::RunBuses(const sim::WorldConfig& world, const RunOptions& options, con
     main_.recorder->set_budget({static_cast<std::uint64_t>(*options.record_mb * 1e6),
                                 std::isfinite(duration_s) ? sim::from_seconds(duration_s).count() : 0});
   }
-  main_.close_gate(tap);
+  main_.close_gate(tap, taps);
   std::map<std::string, std::string> names{{main_.lcm ? main_.lcm->url() : "", "the world's"}};
   for (const sim::BusConfig& bus : world.buses) {
     Link link = open(bus.lcm_url, options);
@@ -50,7 +64,7 @@ RunBuses::RunBuses(const sim::WorldConfig& world, const RunOptions& options, con
                                 link.lcm->url());
     }
     if (main_.recorder) link.recorder = std::make_unique<bridges::RecordingBus>(*link.network, *main_.recorder);
-    link.close_gate(tap);
+    link.close_gate(tap, taps);
     others_.emplace(bus.name, std::move(link));
   }
 }

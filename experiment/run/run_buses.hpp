@@ -25,8 +25,14 @@ namespace experiment {
 /// Buses of a run: that of the world, and those of single vehicles.  With a record, all are written into one log.
 class RunBuses {
  public:
+  /// What a tap receives of what the simulation publishes.
+  enum class Tap {
+    sent,       ///< nothing while the buses are muted
+    published,  ///< everything
+  };
   /// `tap`: receives what the simulation publishes on any bus; empty: none.  Throws BusError.
-  RunBuses(const sim::WorldConfig& world, const RunOptions& options, const TapBus::Listener& tap = {});
+  RunBuses(const sim::WorldConfig& world, const RunOptions& options, const TapBus::Listener& tap = {},
+           Tap taps = Tap::sent);
 
   /// The world's bus, recorded, behind its gate.
   sim::Bus& outer() { return main_.outer(); }
@@ -42,6 +48,10 @@ class RunBuses {
   void admit(const Admitted& admitted);
 
   bool over_lcm() const { return main_.lcm != nullptr; }
+  /// Returns whether a network, a record or a tap receives what is published.
+  bool has_listeners() const { return over_lcm() || main_.recorder || main_.tap; }
+  /// Returns whether the world has a bus of this name; empty: its own.
+  bool has(const std::string& name) const { return name.empty() || others_.contains(name); }
   /// Returns whether messages of other machines can arrive on any bus.
   bool leave_machine() const;
   /// Returns the LCM URL of a bus; empty when it is not an LCM bus.
@@ -88,15 +98,7 @@ class RunBuses {
     std::unique_ptr<MuteBus> mute;
     std::unique_ptr<sim::MessageGate> gate;
     sim::Bus& outer() { return *gate; }
-    void close_gate(const TapBus::Listener& listener) {
-      sim::Bus* inner = recorder ? static_cast<sim::Bus*>(recorder.get()) : network.get();
-      if (listener) {
-        tap = std::make_unique<TapBus>(*inner, listener);
-        inner = tap.get();
-      }
-      mute = std::make_unique<MuteBus>(*inner);
-      gate = std::make_unique<sim::MessageGate>(*mute);
-    }
+    void close_gate(const TapBus::Listener& listener, Tap taps);
   };
   Link open(const std::string& url, const RunOptions& options);
   template <typename Use>

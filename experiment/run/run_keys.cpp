@@ -99,7 +99,7 @@ void RunKeys::answer(char key) {
     const auto [at, error] = std::from_chars(answer_.data(), end, time_s);
     const bool number = error == std::errc{} && at == end;
     if (answer_.empty()) return report_("not");
-    return report_(number ? time_.run_until(time_s) : time_.run_until_event(answer_));
+    return report_(time_.execute("until", number ? "" : answer_, time_s).value_or(""));
   }
   if (key == escape) {
     asking_ = false;

@@ -7,8 +7,10 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "bridges/view/view_publisher.hpp"
@@ -44,6 +46,17 @@ class RunPage {
   };
   /// Executes a request of `sim.control`; none: it is still undecided.
   using Execute = std::function<Answer(const std::string& command, double value, const std::string& text)>;
+  /// Returns the reply to a request.  Throws std::runtime_error with the reason when it is refused.
+  using CarryOut = std::function<std::string(const std::string& command, double value, const std::string& text)>;
+  static Execute answering(CarryOut carry_out) {
+    return [carry_out = std::move(carry_out)](const std::string& command, double value, const std::string& text) {
+      try {
+        return Answer{true, carry_out(command, value, text)};
+      } catch (const std::runtime_error& error) {
+        return Answer{false, error.what()};
+      }
+    };
+  }
   /// Kind of run, unless it is an ordinary one.
   struct Source {
     std::string record;       ///< `recorded`: a record that is run again; `branched`: it has left its record

@@ -9,23 +9,22 @@
 
 namespace experiment {
 
-RunPrograms::RunPrograms(const sim::WorldConfig& config, const RunOptions& options, RunBuses& buses,
-                         std::string run_key)
-    : config_(config), options_(options), buses_(buses), processes_(std::move(run_key)) {}
+RunPrograms::RunPrograms(const RunOptions& options, RunParts& parts, bridges::TimeMachine& time, std::string run_key)
+    : options_(options), parts_(parts), time_(time), processes_(std::move(run_key)) {}
 
 std::vector<std::string> RunPrograms::start() {
+  const std::vector<sim::ProcessConfig>& all = parts_.world.config().processes;
   std::vector<std::string> awaited = options_.await;
   if (!options_.launch) {
-    if (!config_.processes.empty() && !options_.quiet)
-      sim::log_info("the world names {} {}; --launch starts {}", config_.processes.size(),
-                    config_.processes.size() == 1 ? "process" : "processes",
-                    config_.processes.size() == 1 ? "it" : "them");
+    if (!all.empty() && !options_.quiet)
+      sim::log_info("the world names {} {}; --launch starts {}", all.size(), all.size() == 1 ? "process" : "processes",
+                    all.size() == 1 ? "it" : "them");
     return awaited;
   }
-  for (sim::ProcessConfig process : config_.processes) {
+  for (sim::ProcessConfig process : all) {
     for (std::string& argument : process.command) argument = with_run_name(argument, options_.name);
     try {
-      processes_.start(process, buses_.url(process.bus), options_.results);
+      processes_.start(process, parts_.buses.url(process.bus), options_.results);
     } catch (const std::runtime_error& error) {
       throw RunError(4, "process", error.what());
     }
@@ -34,16 +33,17 @@ std::vector<std::string> RunPrograms::start() {
   return awaited;
 }
 
-std::vector<RunPrograms::Exit> RunPrograms::reap(sim::Time now, const Clients& clients) {
+std::vector<RunPrograms::Exit> RunPrograms::reap(bool requests_count) {
   std::vector<Exit> exits;
   for (ProcessGroup::Exit& process : processes_.reap()) {
-    Exit& exit = exits.emplace_back(Exit{std::move(process), sim::to_seconds(now)});
+    Exit& exit = exits.emplace_back(Exit{std::move(process), sim::to_seconds(parts_.world.now())});
     if (exit.client.empty()) continue;
-    const bool has_left = clients.has_left(exit.client);
-    const Left left = has_left ? clients.left(exit.client) : Left{};
-    if (!left.reason.empty()) {
-      exit.how += "; its client '" + exit.client + "' had left: " + left.reason;
-      exit.time_s = left.time_s;
+    if (requests_count) parts_.service.handle_requests(&time_);  // the last request may be to leave
+    const bool has_left = parts_.lockstep.has_left(exit.client);
+    const std::string reason = has_left ? parts_.lockstep.reason_to_leave(exit.client) : "";
+    if (!reason.empty()) {
+      exit.how += "; its client '" + exit.client + "' had left: " + reason;
+      exit.time_s = parts_.lockstep.end_s(exit.client);
     } else if (!exit.failed && !has_left) {
       exit.how += " before the last tick of client '" + exit.client + "', which did not leave";
     } else {
@@ -54,13 +54,15 @@ std::vector<RunPrograms::Exit> RunPrograms::reap(sim::Time now, const Clients& c
   return exits;
 }
 
-void RunPrograms::check(sim::Time now, const Clients& clients) {
+void RunPrograms::check(const std::function<void()>& before_report) {
   if (processes_.empty()) return;
-  for (const Exit& exit : reap(now, clients)) {
+  for (const Exit& exit : reap(true)) {
     const std::string text = "process '" + exit.name + "' " + exit.how;
     note(exit);
     if (exit.ends_run) throw RunError(1, "process", text + "; the run ends with it, as the world requires");
-    const bool goes_on = clients.removed(exit.client);
+    if (before_report) before_report();
+    parts_.service.client_exited(exit.client);
+    const bool goes_on = !parts_.lockstep.has(exit.client);  // otherwise its `on_timeout` applies
     if (exit.failed && !exit.ignored)
       sim::log_error("{}; {}", text, goes_on ? "the run continues without it, and fails" : "its `on_timeout` applies");
     else
@@ -73,14 +75,15 @@ void RunPrograms::note(const Exit& exit) {
   ended_.push_back({exit.name, exit.how, exit.time_s, exit.failed && !exit.ignored});
 }
 
-void RunPrograms::note_last(sim::Time now, const Clients& clients) {
+void RunPrograms::note_last() {
   if (processes_.empty()) return;
-  for (const Exit& exit : reap(now, clients)) note(exit);
-  for (const sim::ProcessConfig& process : config_.processes) {
+  for (const Exit& exit : reap(false)) note(exit);
+  for (const sim::ProcessConfig& process : parts_.world.config().processes) {
     const auto is_noted = [&](const Summary::Process& one) { return one.name == process.name; };
     if (process.client.empty() || std::any_of(ended_.begin(), ended_.end(), is_noted)) continue;
-    if (const Left left = clients.left(process.client); !left.reason.empty())
-      ended_.push_back({process.name, "left: " + left.reason, left.time_s, process.on_exit != sim::OnExit::ignore});
+    if (const std::string reason = parts_.lockstep.reason_to_leave(process.client); !reason.empty())
+      ended_.push_back({process.name, "left: " + reason, parts_.lockstep.end_s(process.client),
+                        process.on_exit != sim::OnExit::ignore});
   }
 }
 

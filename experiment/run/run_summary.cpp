@@ -34,17 +34,17 @@ bool programs_take_part(const sim::WorldConfig& world, const RunOptions& options
 
 void Run::finish(Summary& summary) {
   const OrderlyEnd orderly;
-  programs_.note_last(world_.now(), clients(false));
+  programs_.note_last();
   if (alone_) {        // otherwise the bus belongs to another simulator
     admit_messages();  // record messages after the last step as inputs
-    journal_.finish(summary.ended != "fault" && summary.ended != "error");
-    lockstep_.publish_end([this](std::chrono::milliseconds time) { buses_.wait(time); },
-                          std::chrono::milliseconds(caught_signal() == 0 ? 1000 : 200));
+    parts_.journal.finish(summary.ended != "fault" && summary.ended != "error");
+    parts_.lockstep.publish_end([this](std::chrono::milliseconds time) { parts_.buses.wait(time); },
+                                std::chrono::milliseconds(caught_signal() == 0 ? 1000 : 200));
     if (caught_signal() == 0) programs_.await_clients();
   }
   programs_.stop();
-  buses_.close_record();
-  if (const auto error = buses_.record_error(); error && summary.exit_code == 0) summary.fail(4, "bus", *error);
+  parts_.buses.close_record();
+  if (const auto error = parts_.buses.record_error(); error && summary.exit_code == 0) summary.fail(4, "bus", *error);
   add_figures(summary);
   warn_at_end(summary);
   // Any failed rule or program, or the event that ended it.
@@ -58,67 +58,68 @@ void Run::warn_at_end(Summary& summary) {
   if (summary.steps == 0) return;
   sim::Warnings warnings;
   if (programs_take_part(loaded_.config, options_)) scoring_.warn_of_silence(warnings);
-  const bridges::ChannelUse use = lockstep_.channel_use();
+  const bridges::ChannelUse use = parts_.lockstep.channel_use();
   const auto is_awaited = [&](const std::string& channel) {
     return std::any_of(use.clients().begin(), use.clients().end(), [&](const auto& client) {
       const auto found = client.second.find(channel);
       return found != client.second.end() && found->second.is_subscribed;
     });
   };
-  for (const std::string& line : sim::end_warnings(world_, is_awaited)) warnings.warn({}, "", line);
-  warn_of_channels(loaded_, world_, use, !options_.record.empty(), warnings);
+  for (const std::string& line : sim::end_warnings(parts_.world, is_awaited)) warnings.warn({}, "", line);
+  warn_of_channels(loaded_, parts_.world, use, !options_.record.empty(), warnings);
   summary.warnings = warnings.lines();
 }
 
 void Run::add_figures(Summary& summary) {
-  const sim::BusCounts counts = buses_.counts();
+  const sim::BusCounts counts = parts_.buses.counts();
   // Run, versions and time.
   summary.world = loaded_.config.name;
   summary.description = loaded_.config.description;
   summary.seed = loaded_.config.run.seed;
-  summary.branch = control_.branch;
+  summary.branch = parts_.control.branch;
   summary.snapshot = options_.from_file;
   summary.from_s = time_.scores_from_s();
-  summary.stepped_s = sim::to_seconds(world_.step_time() * steps_taken_);
+  summary.stepped_s = sim::to_seconds(parts_.world.step_time() * steps_taken_);
   summary.version = short_version();
   summary.build = build_text();
-  summary.steps = world_.step_number();
-  summary.sim_time_s = sim::to_seconds(world_.now());
+  summary.steps = parts_.world.step_number();
+  summary.sim_time_s = sim::to_seconds(parts_.world.now());
   summary.duration_s = duration_s_;
   // Hashes and counts of messages.
-  summary.state_hash = world_.state().hash();
-  summary.run_hash = world_.state().run_hash(summary.state_hash);
+  summary.state_hash = parts_.world.state().hash();
+  summary.run_hash = parts_.world.state().run_hash(summary.state_hash);
   summary.messages = counts.published + counts.received;
-  summary.dropped_messages = counts.dropped_incoming + counts.dropped_outgoing + lockstep_.dropped_messages();
-  summary.bad_messages =
-      world_.counts().bad_messages + service_.bad_messages() + lockstep_.bad_messages() + scoring_.bad_messages();
-  summary.quick_steps = world_.physics().quick_steps();
+  summary.dropped_messages = counts.dropped_incoming + counts.dropped_outgoing + parts_.lockstep.dropped_messages();
+  summary.bad_messages = parts_.world.counts().bad_messages + parts_.service.bad_messages() +
+                         parts_.lockstep.bad_messages() + scoring_.bad_messages();
+  summary.quick_steps = parts_.world.physics().quick_steps();
   // More threads are of interest only to a user who asked for some, where the run takes all the time it can get.
   constexpr double keeps_up = 0.9;
-  if (options_.threads > 1 && (control_.speed <= 0 || summary.real_time_factor() < keeps_up * control_.speed))
+  if (options_.threads > 1 &&
+      (parts_.control.speed <= 0 || summary.real_time_factor() < keeps_up * parts_.control.speed))
     summary.threads_advice = shared_work_.advice(sim::ThreadPool(options_.threads).threads());
   // Modems and serial ports.
-  const LinkCounts links = link_counts(world_, "", "");
-  if (!world_.acoustics().transducers().empty()) summary.acoustics = links;
-  summary.acoustic_effects = world_.acoustics().effects();
-  for (const sim::ShadowLoss& loss : world_.acoustics().shadow_losses())
+  const LinkCounts links = link_counts(parts_.world, "", "");
+  if (!parts_.world.acoustics().transducers().empty()) summary.acoustics = links;
+  summary.acoustic_effects = parts_.world.acoustics().effects();
+  for (const sim::ShadowLoss& loss : parts_.world.acoustics().shadow_losses())
     summary.shadowed.push_back({sim::to_seconds(loss.sent), loss.source, loss.receiver, loss.range_m});
-  summary.modem_dropped_messages = world_.shared().of(devices::message_modems).dropped_from_queues();
-  summary.serial_dropped_bytes = devices::serial_dropped_bytes(world_);
+  summary.modem_dropped_messages = parts_.world.shared().of(devices::message_modems).dropped_from_queues();
+  summary.serial_dropped_bytes = devices::serial_dropped_bytes(parts_.world);
   // Metrics, programs and interventions.
   summary.metrics = scoring_.figures();
   summary.verdicts = scoring_.verdicts();
   summary.processes = programs_.ended();
-  summary.clients = lockstep_.summaries();
-  summary.not_recorded = lockstep_.not_recorded();
-  if (const std::uint64_t count = buses_.left_out_of_record(); count > 0)
+  summary.clients = parts_.lockstep.summaries();
+  summary.not_recorded = parts_.lockstep.not_recorded();
+  if (const std::uint64_t count = parts_.buses.left_out_of_record(); count > 0)
     summary.not_recorded.push_back(fmt::format("{} messages (--record-mb)", count));
-  summary.needs_key = lockstep_.guard().requires_key();
-  summary.refused_requests = service_.refused_requests();
-  summary.audit = service_.audit().all();
-  summary.audit_count = service_.audit().count();
-  summary.event = world_.ended();
-  for (const auto& [vehicle, record] : world_.zone_records()) summary.zones[vehicle] = record;
+  summary.needs_key = parts_.lockstep.guard().requires_key();
+  summary.refused_requests = parts_.service.refused_requests();
+  summary.audit = parts_.service.audit().all();
+  summary.audit_count = parts_.service.audit().count();
+  summary.event = parts_.world.ended();
+  for (const auto& [vehicle, record] : parts_.world.zone_records()) summary.zones[vehicle] = record;
   // Without the programs of the world there is nothing to judge.
   const bool took_part = programs_take_part(loaded_.config, options_);
   if (!took_part && !summary.verdicts.empty())

@@ -1,8 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <spdlog/fmt/fmt.h>
-
-#include <cmath>
-
 #include "experiment/results/run_error.hpp"
 #include "experiment/run/run.hpp"
 #include "experiment/snapshot/snapshot_pieces.hpp"
@@ -14,8 +10,8 @@
 namespace experiment {
 
 void Run::leave_branch(std::int64_t to_step, bool ours) {
-  journal_.finish();
-  branch_log_.prepare(control_.branch + 1, to_step, ours);
+  parts_.journal.finish();
+  branch_log_.prepare(parts_.control.branch + 1, to_step, ours);
   if (!results_) return;
   Summary left;
   left.ended = "rewound";
@@ -29,81 +25,52 @@ void Run::hold_here() {
   if (results_) results_->drop_branch();
 }
 
-bool Run::has_listeners() {
-  return buses_.over_lcm() || !options_.record.empty() || page_ != nullptr;
-}
-
 void Run::publish_snapshot() {
-  if (!has_listeners()) return;
+  if (!parts_.buses.has_listeners()) return;
   sim::Bytes buffer;
-  for (const shoal::sim_snapshot_t& piece : in_pieces(time_.snapshot(), control_.branch, journal_.sequence())) {
+  for (const shoal::sim_snapshot_t& piece :
+       in_pieces(time_.snapshot(), parts_.control.branch, parts_.journal.sequence())) {
     shoal::encode_into(piece, buffer);
-    buses_.outer().publish("sim.snapshot", buffer, world_.now());
+    parts_.buses.outer().publish("sim.snapshot", buffer, parts_.world.now());
   }
 }
 
 void Run::start_branch(bool ours) {
-  branch_log_.branch(control_.branch);
-  view_.set_branch(control_.branch);
+  branch_log_.branch(parts_.control.branch);
+  view_.set_branch(parts_.control.branch);
   view_.discard();
-  if (page_) page_->moved(world_, control_, ours, {});
-  lockstep_.set_branch(control_.branch);
-  buses_.set_time(world_.now());
-  service_.report_changes();
-  service_.publish_info();
+  if (page_) page_->moved(parts_.world, parts_.control, ours, {});
+  parts_.lockstep.set_branch(parts_.control.branch);
+  parts_.buses.set_time(parts_.world.now());
+  parts_.service.report_changes();
+  parts_.service.publish_info();
   if (!ours) {  // this step was not observed
     publish_snapshot();
-    service_.publish_step();
-    journal_.after_step();
+    parts_.service.publish_step();
+    parts_.journal.after_step();
   }
-  buses_.end_of_step();
-  branch_log_.mark(world_.step_number(), time_.oldest_step().value_or(world_.step_number()));
-  progress_.restart(world_.now());
-  if (results_) results_->start_branch(world_.now(), ours);
+  parts_.buses.end_of_step();
+  branch_log_.mark(parts_.world.step_number(), time_.oldest_step().value_or(parts_.world.step_number()));
+  progress_.restart(parts_.world.now());
+  if (results_) results_->start_branch(parts_.world.now(), ours);
 }
 
-void Run::plan_snapshots() {
-  const double step_s = sim::to_seconds(world_.step_time());
-  for (const double time_s : options_.snapshot_at_s) {
-    if (duration_s_ > 0 && std::llround(time_s / step_s) > std::llround(duration_s_ / step_s))
-      throw RunError(
-          2, "configuration",
-          fmt::format("--snapshot-at: {:.6g} s is after the end of the run at {:.6g} s", time_s, duration_s_));
-    if (std::llround(time_s / step_s) < world_.step_number())
-      throw RunError(2, "configuration",
-                     fmt::format("--snapshot-at: {:.6g} s is before the start of the run at {:.6g} s", time_s,
-                                 sim::to_seconds(world_.now())));
-    snapshot_steps_.insert(std::llround(time_s / step_s));
-  }
-  // An existing file ends the run now, not when its snapshot is due.
-  std::set<std::int64_t> planned = snapshot_steps_;
-  if (options_.snapshot_every_s) {
-    const double per_step = step_s / *options_.snapshot_every_s;
-    const double next = std::floor((2 * static_cast<double>(world_.step_number()) + 1) * per_step / 2) + 1;
-    planned.insert(static_cast<std::int64_t>(std::ceil(next / per_step - 0.5)));
-  }
+/// An existing file ends the run now, not when its snapshot is due.
+void Run::check_planned_snapshots() const {
   try {
-    for (const std::int64_t step : planned) time_.check_planned_snapshot(step);
+    for (const std::int64_t step : snapshot_plan_.next_steps()) time_.check_planned_snapshot(step);
   } catch (const std::exception& error) {
     throw RunError(4, "bus", error.what());
   }
 }
 
 void Run::report_missed_snapshots() const {
-  for (const std::int64_t step : snapshot_steps_)
-    sim::log_warn("--snapshot-at: no snapshot of {:.6g} s was written: the run ended before it",
-                  sim::to_seconds(world_.step_time() * step));
+  for (const double time_s : snapshot_plan_.missing_s())
+    sim::log_warn("--snapshot-at: no snapshot of {:.6g} s was written: the run ended before it", time_s);
 }
 
 void Run::take_snapshots() {
-  const std::int64_t step = world_.step_number();
-  bool due = snapshot_steps_.erase(step) > 0;
-  if (options_.snapshot_every_s && steps_taken_ > 0) {
-    const double per_step = sim::to_seconds(world_.step_time()) / *options_.snapshot_every_s;
-    const auto half_steps = static_cast<double>(2 * step);  // whole numbers: a time halfway between steps counts once
-    due = due || std::floor((half_steps + 1) * per_step / 2) > std::floor((half_steps - 1) * per_step / 2);
-  }
-  if (!due) return;
+  if (!snapshot_plan_.take(parts_.world.step_number())) return;
   try {
     progress_.clear();
     sim::log_info("{}", time_.write_planned_snapshot());

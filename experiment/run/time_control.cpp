@@ -4,11 +4,8 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <filesystem>
 
-#include "experiment/run/pacer.hpp"
 #include "sim/base/log.hpp"
 #include "sim/base/state_hash.hpp"
 #include "sim/config/message_text.hpp"
@@ -21,33 +18,9 @@ namespace {
 
 constexpr int max_files = 1000;
 constexpr const char* suffix = ".snapshot";
-/// The interval between two snapshots for rewinding is at least this multiple of the cost of the last one (the
-/// following steps are slower too, because their memory is no longer in the caches): in a run that is much faster than
-/// real time they are further apart, and the steps between them take less time to compute again.
-constexpr int rest_per_snapshot = 80;
 /// A client whose last tick is further before the target of a rewind receives an incomplete list, because simulating
 /// that interval again would take too long.
 constexpr std::int64_t max_lead_s = 60;
-
-/// Concatenates bytes so that the ring can compare them part by part, and splits them again.  The last bytes contain
-/// the three sizes.
-constexpr std::size_t trailer_bytes = 3 * sizeof(std::uint64_t);
-
-sim::Bytes joined(const sim::Bytes& state, const sim::Bytes& scores, const sim::Bytes& owners) {
-  sim::Bytes all;
-  all.reserve(state.size() + scores.size() + owners.size() + 64);
-  for (const sim::Bytes* part : {&state, &scores, &owners}) all.insert(all.end(), part->begin(), part->end());
-  auto trailer = sim::StateArchive::saver();
-  trailer.section("sizes");
-  for (const sim::Bytes* part : {&state, &scores, &owners}) {
-    std::uint64_t size = part->size();
-    trailer(size);
-  }
-  trailer.end();
-  const sim::Bytes sizes = trailer.take_bytes();
-  all.insert(all.end(), sizes.begin(), sizes.end());
-  return all;
-}
 
 std::uint64_t hash_of(const sim::Bytes& bytes) {
   sim::StateHash hash;
@@ -82,74 +55,23 @@ TimeControl::TimeControl(sim::World& world, sim::RunControl& control, Scoring& s
       inputs_(inputs),
       options_(std::move(options)),
       timeline_(timeline),
-      steps_per_second_(std::max<std::int64_t>(1, std::llround(1e6 / static_cast<double>(world.step_time().count())))),
-      ring_(std::llround(options_.rewind_s * static_cast<double>(steps_per_second_)), options_.max_bytes) {
-  if (options_.rewind_s > 0) inputs_.keep(options_.max_bytes, [this] { discard_all(); });
-}
-
-TimeControl::Saved TimeControl::save(History history) const {
-  Saved saved;
-  saved.state = world_.state().snapshot();
-  auto scores = sim::StateArchive::saver();
-  scoring_.visit_state(scores, history);
-  scores.end();
-  saved.scores = scores.take_bytes();
-  auto owners = sim::StateArchive::saver();
-  owners.section("owners");
-  service_.visit_state(owners);
-  owners.end();
-  saved.owners = owners.take_bytes();
-  return saved;
-}
-
-void TimeControl::load(const Saved& saved, History history) {
-  world_.state().restore(saved.state);
-  load_beside(saved, history);
-}
-
-void TimeControl::load_beside(const Saved& saved, History history) {
-  auto scores = sim::StateArchive::restorer(saved.scores);
-  scoring_.visit_state(scores, history);
-  scores.end();
-  auto owners = sim::StateArchive::restorer(saved.owners);
-  owners.section("owners");
-  service_.visit_state(owners);
-  owners.end();
+      time_(world, control, scoring, service, {options_.rewind_s, options_.max_bytes}) {
+  if (time_.keeps()) inputs_.keep(options_.max_bytes, [this] { discard_all(); });
 }
 
 void TimeControl::after_step() {
-  if (options_.rewind_s <= 0) return;
-  const std::int64_t step = world_.step_number();
-  const bool due = step % steps_per_second_ == 0 || ring_.size() == 0;
-  if (!due) return;
-  const auto begin = Clock::now();
-  if (ring_.size() > 0 && begin < not_before_) return;
   try {
-    const Saved saved = save(History::length);
-    ring_.add(step, joined(saved.state, saved.scores, saved.owners), inputs_.bytes());
+    if (time_.keep(inputs_.bytes())) inputs_.discard_before(*time_.oldest_kept());
   } catch (const sim::SnapshotError& error) {
     sim::log_warn("this run cannot be rewound: {}", error.what());
-    options_.rewind_s = 0;
-    return discard_all();
+    time_.stop_keeping();
+    discard_all();
   }
-  inputs_.discard_before(*ring_.oldest());
-  const auto end = Clock::now();
-  not_before_ = end + rest_per_snapshot * (end - begin);
 }
 
 void TimeControl::discard_all() {
-  ring_.discard_after(-1);
+  time_.forget_after(-1);
   inputs_.discard_from(-1);
-}
-
-bool TimeControl::stop_when_there() {
-  const bool there = control_.until && world_.now() >= *control_.until;
-  const bool fired =
-      !control_.until_event.empty() && world_.event_firings(control_.until_event).value_or(0) > control_.until_firings;
-  if (!there && !fired) return false;
-  control_.clear_until();
-  control_.set_paused(true);
-  return true;
 }
 
 std::optional<std::string> TimeControl::execute(const std::string& command, const std::string& text, double value) {
@@ -163,80 +85,35 @@ std::optional<std::string> TimeControl::execute(const std::string& command, cons
   if (command == "snapshot") return write_snapshot(text);
   if (command == "restore") return restore(text, value == 1);
   if (command == "rewind") return rewind(value, run_on());
-  if (command == "until") return text.empty() ? run_until(value) : run_until_event(text);
   if (command == "where") {
     const std::string waits = service_.waits_for();
     return place() + (waits.empty() ? "" : ", " + waits) + what_is_kept();
   }
-  if (command == "step") return step(value);
-  if (command == "speed") return set_speed(value);
-  if (set_pace(control_, command, value)) return place();
-  return std::nullopt;
-}
-
-std::string TimeControl::step(double count) {
-  set_pace(control_, "step", count);
-  return place() + fmt::format(", takes {} step{}", control_.single_steps, control_.single_steps == 1 ? "" : "s");
-}
-
-std::string TimeControl::set_speed(double times) {
-  set_pace(control_, "speed", times);
-  return place() + (times > 0 ? fmt::format(", {:g} x real time", times) : ", as fast as possible");
+  const auto more = time_.execute(command, text, value);
+  return more ? std::optional(place() + *more) : std::nullopt;
 }
 
 std::string TimeControl::place() const {
-  return fmt::format("step {}, {:.6g} s, branch {}{}", world_.step_number(), sim::to_seconds(world_.now()),
-                     control_.branch, control_.paused ? ", paused" : "");
+  return fmt::format("{}, branch {}{}", time_.place(), control_.branch, control_.paused ? ", paused" : "");
 }
 
 std::string TimeControl::what_is_kept() const {
-  const auto oldest = ring_.oldest();
+  const auto oldest = time_.oldest_kept();
   if (!oldest) return "";
-  return fmt::format("; can be rewound to {:.6g} s, which takes {:.2f} MB",
-                     sim::to_seconds(world_.step_time() * *oldest), static_cast<double>(bytes()) / 1e6);
-}
-
-std::string TimeControl::run_until(double time_s) {
-  if (!(time_s > sim::to_seconds(world_.now()) && time_s <= 1e9))
-    throw std::runtime_error(fmt::format("'until' needs a time after now ({:.6g} s) and at most 1e9 s, got {}",
-                                         sim::to_seconds(world_.now()), time_s));
-  control_.clear_until();
-  control_.until = sim::from_seconds(time_s);
-  control_.set_paused(false);
-  return place() + fmt::format(", runs until {:.6g} s", time_s);
-}
-
-std::string TimeControl::run_until_event(const std::string& name) {
-  const auto firings = world_.event_firings(name);
-  if (!firings)
-    throw std::runtime_error("'until' needs a time or the name of an event of the world, got '" +
-                             sim::shortened(sim::printable(name)) + "'");
-  control_.clear_until();
-  control_.until_event = name;
-  control_.until_firings = *firings;
-  control_.set_paused(false);
-  return place() + ", runs until event '" + name + "' fires";
+  return fmt::format("; can be rewound to {:.6g} s, which takes {:.2f} MB", time_.seconds_at(*oldest),
+                     static_cast<double>(bytes()) / 1e6);
 }
 
 std::string TimeControl::rewind(double seconds, bool run_on) {
-  if (options_.rewind_s <= 0) throw std::runtime_error("this run keeps no snapshots for a rewind: see --rewind-s");
-  if (!(seconds > 0 && seconds <= 1e9))
-    throw std::runtime_error(fmt::format("'rewind' needs a value above 0, in seconds, got {}", seconds));
-  const double steps = seconds * 1e6 / static_cast<double>(world_.step_time().count());
-  if (std::llround(steps) < 1)
-    throw std::runtime_error(fmt::format("'rewind' by {} s is less than half a step of {:.6g} s", seconds,
-                                         sim::to_seconds(world_.step_time())));
-  if (world_.step_number() == first_step_)
-    throw std::runtime_error("already at the start of the run: nothing to rewind");
+  if (!time_.keeps()) throw std::runtime_error("this run keeps no snapshots for a rewind: see --rewind-s");
   // A rewind beyond the start goes to the start.
-  const std::int64_t target = std::max<std::int64_t>(world_.step_number() - std::llround(steps), first_step_);
-  auto base = ring_.newest_until(inputs_.needed_from(target, max_lead_s * steps_per_second_));
-  if (!base) base = ring_.newest_until(target);  // some clients will lack reports
-  if (!base) {
-    const double oldest_s = sim::to_seconds(sim::Time{ring_.oldest().value_or(0) * world_.step_time().count()});
+  const std::int64_t target = time_.step_before(seconds, first_step_);
+  auto base = time_.newest_kept_until(inputs_.needed_from(target, max_lead_s * time_.steps_per_second()));
+  if (!base) base = time_.newest_kept_until(target);  // some clients will lack reports
+  if (!base)
     throw std::runtime_error(fmt::format("cannot rewind {:.6g} s from {:.6g} s: the history starts at {:.6g} s",
-                                         seconds, sim::to_seconds(world_.now()), oldest_s));
-  }
+                                         seconds, sim::to_seconds(world_.now()),
+                                         time_.seconds_at(time_.oldest_kept().value_or(0))));
   rewind_to(*base, target, run_on);
   return place();
 }
@@ -244,16 +121,9 @@ std::string TimeControl::rewind(double seconds, bool run_on) {
 void TimeControl::rewind_to(std::int64_t base, std::int64_t target, bool run_on) {
   travel(
       [&] {
-        const sim::Bytes all = ring_.get(base);
-        std::uint64_t sizes[3];
-        std::memcpy(sizes, all.data() + all.size() - trailer_bytes, trailer_bytes);
-        const auto at = [&](std::uint64_t offset) { return all.begin() + static_cast<std::ptrdiff_t>(offset); };
-        load({{at(0), at(sizes[0])},
-              {at(sizes[0]), at(sizes[0] + sizes[1])},
-              {at(sizes[0] + sizes[1]), at(sizes[0] + sizes[1] + sizes[2])}},
-             History::length);
+        time_.load_kept(base);
         simulate_again(target);
-        ring_.discard_after(target);
+        time_.forget_after(target);
         inputs_.discard_from(target);
         written_.erase(written_.upper_bound(target), written_.end());
       },
@@ -272,7 +142,7 @@ void TimeControl::simulate_again(std::int64_t to_step) {
 }
 
 void TimeControl::travel(const std::function<void()>& work, std::int64_t to_step, bool run_on, bool ours) {
-  const Saved before = save(History::whole);
+  const SavedRun before = time_.save(History::whole);
   // Leave the present branch.
   try {
     timeline_.leave_branch(to_step, ours);
@@ -302,9 +172,9 @@ void TimeControl::travel(const std::function<void()>& work, std::int64_t to_step
   }
 }
 
-void TimeControl::restore_saved(const Saved& before) {
+void TimeControl::restore_saved(const SavedRun& before) {
   try {
-    load(before, History::whole);
+    time_.load(before, History::whole);
   } catch (const std::exception& error) {
     broken_ = error.what();
   }
@@ -321,7 +191,7 @@ void TimeControl::go_on_from(const Snapshot& snapshot) {
   first_step_ = world_.step_number();
   options_.scores_from_s = snapshot.from_s;
   try {
-    load_beside({{}, snapshot.scores, snapshot.owners}, History::whole);
+    time_.load_beside({{}, snapshot.scores, snapshot.owners}, History::whole);
   } catch (const sim::SnapshotError&) {
     throw std::runtime_error(
         "the metrics of the snapshot differ from those of this world: `metrics` cannot be changed");
@@ -342,7 +212,7 @@ Snapshot TimeControl::snapshot() const {
   s.from_s = options_.scores_from_s;
   s.state_hash = world_.state().hash();
   for (const auto& vehicle : world_.vehicles()) s.vehicles.push_back(vehicle->name());
-  Saved saved = save(History::whole);
+  SavedRun saved = time_.save(History::whole);
   s.state = std::move(saved.state);
   s.scores = std::move(saved.scores);
   s.owners = std::move(saved.owners);
@@ -417,7 +287,7 @@ std::string TimeControl::restore(const std::string& name, bool run_on) {
   }
   travel(
       [&] {
-        load({snapshot.state, snapshot.scores, snapshot.owners}, History::whole);
+        time_.load({snapshot.state, snapshot.scores, snapshot.owners}, History::whole);
         options_.scores_from_s = snapshot.from_s;
         discard_all();
         after_step();
@@ -440,12 +310,12 @@ void TimeControl::restore_with_clients(const Snapshot& snapshot, const std::stri
   if (written == written_.end() || written->second != hash_of(snapshot.state))
     refuse("was not written by this run before " + place());
   // Unlike in rewind(), a later start would lack reports for some client.  At the start of the run no client had any.
-  const std::int64_t needed = inputs_.needed_from(snapshot.step, max_lead_s * steps_per_second_);
-  const auto base = ring_.newest_until(std::max(needed, first_step_));
+  const std::int64_t needed = inputs_.needed_from(snapshot.step, max_lead_s * time_.steps_per_second());
+  const auto base = time_.newest_kept_until(std::max(needed, first_step_));
   if (!base)
-    refuse(ring_.oldest() ? fmt::format("t = {:.6g} s precedes this run's history, which starts at {:.6g} s",
-                                        snapshot.time_s(), sim::to_seconds(world_.step_time() * *ring_.oldest()))
-                          : "this run keeps no history (see --rewind-s)");
+    refuse(time_.oldest_kept() ? fmt::format("t = {:.6g} s precedes this run's history, which starts at {:.6g} s",
+                                             snapshot.time_s(), time_.seconds_at(*time_.oldest_kept()))
+                               : "this run keeps no history (see --rewind-s)");
   rewind_to(*base, snapshot.step, run_on);
 }
 

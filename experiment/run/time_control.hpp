@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -15,14 +14,14 @@
 #include "experiment/run/timeline.hpp"
 #include "experiment/score/scoring.hpp"
 #include "experiment/snapshot/snapshot_file.hpp"
-#include "experiment/snapshot/snapshot_ring.hpp"
+#include "experiment/time/world_time.hpp"
 #include "sim/run/run_control.hpp"
 #include "sim/world/world.hpp"
 
 namespace experiment {
 
-/// Time control of a running world: keeps snapshots of the last seconds and the inputs since then, rewinds to any step
-/// of them, writes and restores snapshot files, and stops the run at a time or event.
+/// Time control of a running world: a WorldTime, and the inputs since its oldest state, with which the run is taken to
+/// any step since then; and snapshot files.
 ///
 /// A rewind starts a new branch: RunControl::branch is incremented.
 class TimeControl final : public bridges::TimeMachine {
@@ -43,21 +42,13 @@ class TimeControl final : public bridges::TimeMachine {
 
   /// To be called before the first step, and after each.
   void after_step();
-  /// Pauses a run that has reached its `until`.  Returns true when it did so now.
-  bool stop_when_there();
+  bool stop_when_there() { return time_.stop_when_there(); }
 
   /// Executes all requests about time: pause, resume, step, speed, until, rewind, snapshot, restore and where.  Throws
   /// std::runtime_error with the reason of a rejection.
   std::optional<std::string> execute(const std::string& command, const std::string& text, double value) override;
-  /// Takes `count` steps, a whole number, and pauses.
-  std::string step(double count);
-  /// Sets the speed in multiples of real time; 0: as fast as possible.
-  std::string set_speed(double times);
   /// Rewinds by a number of seconds, at most to the start of this run.
   std::string rewind(double seconds, bool run_on);
-  /// Runs to a time, or to the next occurrence of an event, and pauses there.
-  std::string run_until(double time_s);
-  std::string run_until_event(const std::string& name);
   /// Writes a file into the directory of snapshots; an empty name is replaced by one with the step.  Clients can
   /// request up to 1000 files.
   std::string write_snapshot(const std::string& name);
@@ -81,23 +72,15 @@ class TimeControl final : public bridges::TimeMachine {
   bool take_moved() { return std::exchange(moved_, false); }
   /// Returns why the world cannot continue.
   const std::string& broken() const { return broken_; }
-  std::size_t bytes() const { return ring_.bytes() + inputs_.bytes(); }
-  std::optional<std::int64_t> oldest_step() const { return ring_.oldest(); }
+  std::size_t bytes() const { return time_.bytes() + inputs_.bytes(); }
+  std::optional<std::int64_t> oldest_step() const { return time_.oldest_kept(); }
 
  private:
-  using Clock = std::chrono::steady_clock;
-  struct Saved {
-    sim::Bytes state, scores, owners;
-  };
-
-  Saved save(History history) const;
-  void load(const Saved& saved, History history);
-  void load_beside(const Saved& saved, History history);
   void discard_all();
   void simulate_again(std::int64_t to_step);
   /// Executes `work`, which moves the world in time; restores the world when that fails.
   void travel(const std::function<void()>& work, std::int64_t to_step, bool run_on, bool ours);
-  void restore_saved(const Saved& before);
+  void restore_saved(const SavedRun& before);
   /// Moves to a step of this branch, from an earlier snapshot in memory.
   void rewind_to(std::int64_t base, std::int64_t target, bool run_on);
   void restore_with_clients(const Snapshot& snapshot, const std::string& path, bool run_on);
@@ -113,10 +96,8 @@ class TimeControl final : public bridges::TimeMachine {
   RunInputs& inputs_;
   Options options_;
   Timeline& timeline_;
-  std::int64_t steps_per_second_;
-  SnapshotRing ring_;
-  Clock::time_point not_before_;  // wall time of the next snapshot for rewinding
-  std::int64_t first_step_ = 0;   ///< first step of this run, or of an earlier file
+  WorldTime time_;
+  std::int64_t first_step_ = 0;  ///< first step of this run, or of an earlier file
   int files_ = 0;
   /// Steps at which a file was written, with the hash of its state: of this branch, as far back as its history is
   /// known.

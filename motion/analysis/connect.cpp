@@ -10,10 +10,9 @@
 #include "experiment/optimize/cma_es.hpp"
 #include "motion/analysis/motion_check.hpp"
 #include "motion/analysis/motion_tracking.hpp"
-#include "sim/bus/in_process_bus.hpp"
 #include "sim/ode/physics_fault.hpp"
 #include "sim/vehicle/mounted_device.hpp"
-#include "sim/world/world.hpp"
+#include "sim/world/standalone_world.hpp"
 #include "sim/world/world_state.hpp"
 
 namespace motion {
@@ -49,8 +48,7 @@ struct Connector::Route {
 
 struct ConnectWorld::Impl {
   sim::WorldConfig config;  ///< must outlive the world
-  sim::InProcessBus bus;
-  sim::World world;
+  sim::StandaloneWorld world;
   std::string vehicle_name;
   std::vector<const devices::JointServo*> servos;
   std::vector<std::string> names, aliases;
@@ -60,7 +58,7 @@ struct ConnectWorld::Impl {
   bool fell = false;
 
   Impl(const sim::WorldConfig& in, std::string name, const sim::JointMotion& motion)
-      : config(in), world(config, bus), vehicle_name(std::move(name)), start(motion) {
+      : config(in), world(config), vehicle_name(std::move(name)), start(motion) {
     for (const sim::MountedDevice* device : vehicle().devices()) {
       if (const auto* servo = dynamic_cast<const devices::JointServo*>(device->actuator())) {
         servos.push_back(servo);

@@ -14,10 +14,9 @@
 #include "motion/analysis/motion_tracking.hpp"
 #include "motion/analysis/perturbed_world.hpp"
 #include "sim/base/thread_pool.hpp"
-#include "sim/bus/in_process_bus.hpp"
 #include "sim/ode/physics_fault.hpp"
 #include "sim/vehicle/mounted_device.hpp"
-#include "sim/world/world.hpp"
+#include "sim/world/standalone_world.hpp"
 
 namespace motion {
 
@@ -30,7 +29,7 @@ class ComparedModel {
  public:
   ComparedModel(sim::WorldConfig config, const std::string& vehicle, const sim::JointMotion& motion)
       : config_(with_motion(std::move(config), vehicle, motion)),
-        world_(config_, bus_),
+        world_(config_),
         vehicle_(*world_.find_vehicle(vehicle)),
         player_(player_of(vehicle_)) {
     world_.physics().watch_contacts(vehicle_.group());
@@ -84,8 +83,7 @@ class ComparedModel {
   }
 
   sim::WorldConfig config_;  // to which the world refers
-  sim::InProcessBus bus_;
-  sim::World world_;
+  sim::StandaloneWorld world_;
   const sim::Vehicle& vehicle_;
   const devices::MotionPlayer& player_;
   double start_s_ = 0;

@@ -62,7 +62,7 @@ MotionStage::MotionStage(const StageOptions& options, const std::function<sim::J
   load.encode_message = shoal::encode_own_message;
   loaded_ =
       options.tree ? sim::load_world_tree(*options.tree, options.world, load) : sim::load_world(options.world, load);
-  world_ = std::make_unique<sim::World>(loaded_.config, bus_);
+  world_ = std::make_unique<sim::StandaloneWorld>(loaded_.config);
   if (options.scores) scoring_ = std::make_unique<experiment::Scoring>(*world_);
   // Find the player.
   for (const auto& vehicle : world_->vehicles())
@@ -135,9 +135,9 @@ void MotionStage::restore(const Saved& saved) {
   archive.end();
 }
 
-void MotionStage::restore(StageCopy& copy, const sim::Bytes& snapshot) const {
-  copy.world().state().restore(snapshot);
-  if (after_restore) after_restore(player_in(copy.world()));
+void MotionStage::restore(sim::World& copy, const sim::Bytes& snapshot) const {
+  copy.state().restore(snapshot);
+  if (after_restore) after_restore(player_in(copy));
 }
 
 std::uint64_t MotionStage::state_hash() const {

@@ -14,9 +14,8 @@
 #include "devices/motion/motion_player.hpp"
 #include "experiment/score/scoring.hpp"
 #include "experiment/score/support.hpp"
-#include "sim/bus/in_process_bus.hpp"
 #include "sim/motion/motion.hpp"
-#include "sim/world/world.hpp"
+#include "sim/world/standalone_world.hpp"
 #include "sim/world_file/load_world.hpp"
 
 namespace motion {
@@ -31,19 +30,6 @@ struct StageOptions {
   double kept_s = std::numeric_limits<double>::infinity();  ///< how far it can go back, s
   devices::MotionPlayer::Play play;                         ///< part that is played; the motion is that of the stage
   bool scores = false;                                      ///< whether the metrics of the world are computed
-};
-
-/// Another world of the same configuration, on its own bus.
-class StageCopy {
- public:
-  /// `config` must outlive this.
-  explicit StageCopy(const sim::WorldConfig& config) : world_(config, bus_) {}
-  explicit StageCopy(const sim::WorldConfig&&) = delete;
-  sim::World& world() { return world_; }
-
- private:
-  sim::InProcessBus bus_;
-  sim::World world_;
 };
 
 /// World in which a motion is played, and can be played again from any instant.
@@ -100,9 +86,9 @@ class MotionStage {
   const sim::ConfigNode& resolved_world() const { return loaded_.resolved; }
   /// Returns a world in which snapshots of this one can be restored.  It may be used by another thread, one thread at a
   /// time; the stage must outlive it.
-  std::unique_ptr<StageCopy> copy() const { return std::make_unique<StageCopy>(loaded_.config); }
+  std::unique_ptr<sim::StandaloneWorld> copy() const { return std::make_unique<sim::StandaloneWorld>(loaded_.config); }
   /// Restores a snapshot of the world of this stage in a copy, with what after_restore sets.
-  void restore(StageCopy& copy, const sim::Bytes& snapshot) const;
+  void restore(sim::World& copy, const sim::Bytes& snapshot) const;
   /// Carries out in a copy the changes that the world of this stage had after the present step of the copy.
   void apply_changes(sim::World& world) const;
   const sim::Vehicle& vehicle() const;
@@ -135,8 +121,7 @@ class MotionStage {
 
   StageOptions options_;
   sim::LoadedWorld loaded_;
-  sim::InProcessBus bus_;
-  std::unique_ptr<sim::World> world_;
+  std::unique_ptr<sim::StandaloneWorld> world_;
   std::unique_ptr<experiment::Scoring> scoring_;
   std::string vehicle_, player_;
   std::optional<std::uint64_t> watched_generation_;  ///< of the world, in which the contacts of the vehicle are watched

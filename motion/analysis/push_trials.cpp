@@ -55,8 +55,8 @@ class PushWorld {
   /// `course`: it ends when it moves again as there.
   PushOutcome push(const sim::Bytes& snapshot, const sim::Vector3d& impulse_per_mass_V, const PushOptions& options,
                    std::span<const BaseState> course = {}) {
-    sim::World& world = copy_->world();
-    stage_.restore(*copy_, snapshot);
+    sim::World& world = *copy_;
+    stage_.restore(world, snapshot);
     const sim::Vehicle& vehicle = *world.find_vehicle(stage_.vehicle().name());
     world.physics().watch_contacts(vehicle.group());
     sim::Body& base = *vehicle.bodies().front().second;
@@ -94,7 +94,7 @@ class PushWorld {
 
  private:
   const MotionStage& stage_;
-  std::unique_ptr<StageCopy> copy_;
+  std::unique_ptr<sim::StandaloneWorld> copy_;
 };
 
 sim::Vector3d along(double angle_rad) {

@@ -11,10 +11,9 @@
 #include "devices/motion/motion_player.hpp"
 #include "motion/analysis/motion_tracking.hpp"
 #include "motion/analysis/perturbed_world.hpp"
-#include "sim/bus/in_process_bus.hpp"
 #include "sim/ode/physics_fault.hpp"
 #include "sim/vehicle/mounted_device.hpp"
-#include "sim/world/world.hpp"
+#include "sim/world/standalone_world.hpp"
 #include "sim/world/world_state.hpp"
 
 namespace motion {
@@ -98,11 +97,10 @@ class Walker {
 Walk measured_walk(sim::WorldConfig config, const std::string& vehicle_name, const sim::JointMotion& motion,
                    const WalkOptions& options) {
   set_played_motion(config, vehicle_name, motion);
-  sim::InProcessBus bus;
-  std::unique_ptr<sim::World> world;
+  std::unique_ptr<sim::StandaloneWorld> world;
   {
     const std::lock_guard lock(building());
-    world = std::make_unique<sim::World>(config, bus);
+    world = std::make_unique<sim::StandaloneWorld>(config);
   }
   const sim::Vehicle& vehicle = *world->find_vehicle(vehicle_name);
   world->physics().watch_contacts(vehicle.group());

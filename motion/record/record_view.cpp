@@ -9,13 +9,8 @@ namespace motion {
 
 void RecordView::serve(bool is_paused) {
   page_.control().paused = is_paused;
-  page_.serve([this](const std::string& command, double, const std::string& text) {
-    try {
-      return viewer::RunView::Answer{true, execute(command, text)};
-    } catch (const std::runtime_error& error) {
-      return viewer::RunView::Answer{false, error.what()};
-    }
-  });
+  page_.serve(viewer::RunView::answering(
+      [this](const std::string& command, double, const std::string& text) { return execute(command, text); }));
 }
 
 std::string RecordView::execute(const std::string& command, const std::string& text) {

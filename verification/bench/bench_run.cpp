@@ -18,32 +18,32 @@ std::string bench_world_file(const BenchScene& scene) {
 }  // namespace
 
 BenchRun::BenchRun(const BenchScene& scene, int vehicles, const std::vector<std::string>& sets, int threads)
-    : loaded_(sim::load_world_text(scene.world_text(vehicles), bench_world_file(scene), {sets, {}, false, {}})) {
-  world_ = std::make_unique<sim::World>(loaded_.config, bus_);
-  world_->use_threads(threads);
-  if (scene.programs != nullptr) programs_ = scene.programs(*world_, bus_);
+    : loaded_(sim::load_world_text(scene.world_text(vehicles), bench_world_file(scene), {sets, {}, false, {}})),
+      world_(loaded_.config) {
+  world_.use_threads(threads);
+  if (scene.programs != nullptr) programs_ = scene.programs(world_, world_.own_bus);
   if (programs_) programs_->think({});
 }
 
 BenchRun::~BenchRun() = default;
 
 void BenchRun::step() {
-  world_->step();
+  world_.step();
   if (!programs_) return;
-  if (!measures_) return programs_->think(world_->now());
+  if (!measures_) return programs_->think(world_.now());
   const double start_s = sim::StageClock::now_s();
-  programs_->think(world_->now());
+  programs_->think(world_.now());
   programs_s_ += sim::StageClock::now_s() - start_s;
 }
 
 void BenchRun::run_for(double time_s) {
-  const sim::Time end = world_->now() + sim::from_seconds(time_s);
-  while (world_->now() < end) step();
+  const sim::Time end = world_.now() + sim::from_seconds(time_s);
+  while (world_.now() < end) step();
 }
 
 void BenchRun::measure_stages(sim::StageTimes* times) {
   measures_ = times != nullptr;
-  world_->state().measure_stages(times);
+  world_.state().measure_stages(times);
 }
 
 }  // namespace verification

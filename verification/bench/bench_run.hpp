@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/bus/in_process_bus.hpp"
-#include "sim/world/world.hpp"
+#include "sim/world/standalone_world.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "verification/bench/bench_scene.hpp"
 
@@ -22,9 +21,9 @@ class BenchRun {
   /// Takes one step of the world, and lets the programs react to new messages.
   void step();
   void run_for(double time_s);
-  sim::World& world() { return *world_; }
-  const sim::World& world() const { return *world_; }
-  const sim::InProcessBus& bus() const { return bus_; }
+  sim::World& world() { return world_; }
+  const sim::World& world() const { return world_; }
+  const sim::InProcessBus& bus() const { return world_.own_bus; }
   /// CPU time of the programs since the start, while measured.
   double programs_s() const { return programs_s_; }
   /// Adds the times of the stages of each step to `times` from now on, and measures the programs; null: no longer.
@@ -32,8 +31,7 @@ class BenchRun {
 
  private:
   sim::LoadedWorld loaded_;
-  sim::InProcessBus bus_;
-  std::unique_ptr<sim::World> world_;
+  sim::StandaloneWorld world_;
   std::unique_ptr<ScenePrograms> programs_;
   bool measures_ = false;
   double programs_s_ = 0;

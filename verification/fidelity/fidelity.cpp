@@ -9,10 +9,9 @@
 #include <numbers>
 
 #include "messages/yaml/message_writer.hpp"
-#include "sim/bus/in_process_bus.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
-#include "sim/world/world.hpp"
+#include "sim/world/standalone_world.hpp"
 #include "sim/world/world_editor.hpp"
 #include "sim/world_file/load_world.hpp"
 
@@ -222,7 +221,7 @@ class CaseWorld {
     sim::LoadOptions load;
     load.resolve = false;
     loaded_ = sim::load_world_tree(fidelity_world(of, reference, options), file, load);
-    world_ = std::make_unique<sim::World>(loaded_.config, bus_);
+    world_ = std::make_unique<sim::StandaloneWorld>(loaded_.config);
     check_inputs(of, vehicle());
     set_velocity(vehicle(), state_of(of, reference, reference.rows.front()));
   }
@@ -241,8 +240,7 @@ class CaseWorld {
   const FidelityReference& reference_;
   double step_s_;
   sim::LoadedWorld loaded_;
-  sim::InProcessBus bus_;
-  std::unique_ptr<sim::World> world_;
+  std::unique_ptr<sim::StandaloneWorld> world_;
 };
 
 /// Richardson's extrapolation to step zero, for a step of second order: from the states at a step and at half of it.

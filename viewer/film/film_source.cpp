@@ -9,7 +9,7 @@
 #include "experiment/replay/replayed_world.hpp"
 #include "experiment/world_files/world_by_name.hpp"
 #include "messages/yaml/message_writer.hpp"
-#include "sim/bus/in_process_bus.hpp"
+#include "sim/world/standalone_world.hpp"
 
 namespace viewer {
 
@@ -18,7 +18,7 @@ namespace {
 /// World without programs.
 class WorldSource final : public FilmSource {
  public:
-  explicit WorldSource(sim::LoadedWorld loaded) : loaded_(std::move(loaded)), world_(loaded_.config, bus_) {
+  explicit WorldSource(sim::LoadedWorld loaded) : loaded_(std::move(loaded)), world_(loaded_.config) {
     world_.use_threads(0);
   }
 
@@ -32,8 +32,7 @@ class WorldSource final : public FilmSource {
 
  private:
   sim::LoadedWorld loaded_;
-  sim::InProcessBus bus_;
-  sim::World world_;
+  sim::StandaloneWorld world_;
   std::string log_;
 };
 

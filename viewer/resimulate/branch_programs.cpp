@@ -26,20 +26,21 @@ bool is_one_of(const std::string& command, const std::array<const char*, count>&
 }  // namespace
 
 BranchPrograms::BranchPrograms(experiment::ReplayedWorld& replayed, Execute execute)
-    : replayed_(replayed), execute_(std::move(execute)) {
+    : replayed_(replayed), parts_(replayed.parts()), execute_(std::move(execute)) {
   options_.launch = true;
   options_.quiet = true;
-  replayed_.service().set_repeating(true);
+  parts_.service.set_repeating(true);
 }
 
 void BranchPrograms::start() {
   stop();
-  if (const auto lost = replayed_.buses().lost_connection()) throw experiment::RunError(4, "bus", *lost);
-  replayed_.buses().set_muted(false);
-  replayed_.service().publish_info();
-  replayed_.service().publish_step();
-  replayed_.buses().end_of_step();
-  programs_ = std::make_unique<experiment::RunPrograms>(replayed_.loaded().config, options_, replayed_.buses(), "");
+  if (const auto lost = parts_.buses.lost_connection()) throw experiment::RunError(4, "bus", *lost);
+  parts_.buses.set_muted(false);
+  parts_.service.publish_info();
+  parts_.service.publish_step();
+  parts_.buses.end_of_step();
+  bridges::TimeMachine& time = *this;  // its private base
+  programs_ = std::make_unique<experiment::RunPrograms>(options_, parts_, time, "");
   synchronized_ = begun_ = false;
   set_acting(false);
   try {
@@ -48,7 +49,7 @@ void BranchPrograms::start() {
     stop();
     throw;
   }
-  const double timeout_s = replayed_.loaded().config.lockstep.join_timeout_s;
+  const double timeout_s = parts_.world.config().lockstep.join_timeout_s;
   join_until_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(timeout_s));
 }
 
@@ -57,62 +58,47 @@ void BranchPrograms::stop() {
   programs_->stop();
   programs_.reset();
   awaited_.clear();
-  replayed_.lockstep().remove_all("its branch ended");
+  parts_.lockstep.remove_all("its branch ended");
   set_acting(false);
-  replayed_.buses().set_muted(true);
+  parts_.buses.set_muted(true);
 }
 
 void BranchPrograms::set_acting(bool acting) {
   acting_ = acting;
   replayed_.set_live(acting);
-  replayed_.service().set_repeating(!acting);
+  parts_.service.set_repeating(!acting);
 }
 
 void BranchPrograms::end_of_step() {
   if (!programs_) return;
-  replayed_.buses().end_of_step();
+  parts_.buses.end_of_step();
   synchronized_ = false;
-}
-
-experiment::RunPrograms::Clients BranchPrograms::clients() {
-  return {[this](const std::string& client) {
-            replayed_.service().handle_requests(this);  // the last request may be to leave
-            return replayed_.lockstep().has_left(client);
-          },
-          [this](const std::string& client) {
-            replayed_.service().client_exited(client);
-            return !replayed_.lockstep().has(client);
-          },
-          [this](const std::string& client) {
-            return experiment::RunPrograms::Left{replayed_.lockstep().reason_to_leave(client),
-                                                 replayed_.lockstep().end_s(client)};
-          }};
 }
 
 bool BranchPrograms::joined() {
   std::erase_if(awaited_, [this](const std::string& client) {
-    return replayed_.lockstep().has(client) || programs_->is_gone(client);
+    return parts_.lockstep.has(client) || programs_->is_gone(client);
   });
   if (awaited_.empty()) return true;
   if (Clock::now() > join_until_)
     throw experiment::RunError(5, "timeout",
                                fmt::format("lockstep: client '{}' has not joined within {:g} s", awaited_.front(),
-                                           replayed_.loaded().config.lockstep.join_timeout_s));
-  replayed_.buses().wait(max_wait);
+                                           parts_.world.config().lockstep.join_timeout_s));
+  parts_.buses.wait(max_wait);
   return false;
 }
 
 bool BranchPrograms::ready() {
-  replayed_.service().handle_requests(this);
+  parts_.service.handle_requests(this);
   if (!programs_) return true;
-  programs_->check(replayed_.world().now(), clients());
-  if (const auto lost = replayed_.buses().lost_connection()) throw experiment::RunError(4, "bus", *lost);
+  programs_->check();
+  if (const auto lost = parts_.buses.lost_connection()) throw experiment::RunError(4, "bus", *lost);
   if (!begun_ && !joined()) return false;
   begun_ = true;
   if (synchronized_) return true;
   const Clock::time_point until = Clock::now() + max_wait;
-  const auto outcome = replayed_.lockstep().synchronize([this](milliseconds time) { replayed_.buses().wait(time); },
-                                                        [until] { return Clock::now() < until; });
+  const auto outcome = parts_.lockstep.synchronize([this](milliseconds time) { parts_.buses.wait(time); },
+                                                   [until] { return Clock::now() < until; });
   synchronized_ = outcome == bridges::LockstepOutcome::done;
   return synchronized_;
 }
@@ -120,7 +106,7 @@ bool BranchPrograms::ready() {
 std::string BranchPrograms::waits_for() {
   if (!programs_) return "";
   if (!begun_ && !awaited_.empty()) return "'" + awaited_.front() + "' to join";
-  return replayed_.lockstep().waits_for();
+  return parts_.lockstep.waits_for();
 }
 
 std::optional<std::string> BranchPrograms::execute(const std::string& command, const std::string& text, double value) {

@@ -44,11 +44,11 @@ class BranchPrograms final : private bridges::TimeMachine {
   using Clock = std::chrono::steady_clock;
 
   std::optional<std::string> execute(const std::string& command, const std::string& text, double value) override;
-  experiment::RunPrograms::Clients clients();
   /// Returns whether all programs have joined.
   bool joined();
 
   experiment::ReplayedWorld& replayed_;
+  experiment::RunParts& parts_;  // of it
   const Execute execute_;
   experiment::RunOptions options_;
   std::unique_ptr<experiment::RunPrograms> programs_;

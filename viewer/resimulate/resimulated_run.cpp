@@ -4,9 +4,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <limits>
 #include <stdexcept>
 #include <thread>
 
@@ -15,7 +12,6 @@
 #include "experiment/score/saved_scores.hpp"
 #include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/state/state_archive.hpp"
 
 namespace viewer {
 
@@ -24,10 +20,7 @@ namespace {
 using std::chrono::microseconds;
 
 /// Snapshots of the last ten minutes are kept; to go further back the run starts again.
-constexpr std::int64_t snapshots_us = 600'000'000;
-constexpr std::size_t max_snapshot_bytes = std::size_t{64} << 20;
-/// The interval between two snapshots is at least this multiple of the cost of the last one.
-constexpr int rest_per_snapshot = 80;
+constexpr double snapshots_s = 600;
 constexpr microseconds paused_wait{20'000};
 
 experiment::ReplayedWorld::Options replay_options(const ResimulatedRun::Options& options,
@@ -47,8 +40,8 @@ ResimulatedRun::ResimulatedRun(const Options& options, const std::string& versio
       view_(
           replayed_.bus(), replayed_.world(),
           [this](shoal::sim_scores_t& message) { experiment::fill_scores(scoring_, message); }, [] { return true; }),
-      control_(replayed_.control()),
-      snapshots_(snapshots_us / world().step_time().count(), max_snapshot_bytes) {
+      control_(replayed_.parts().control),
+      time_(replayed_.world(), control_, scoring_, replayed_.parts().service, {.kept_s = snapshots_s}) {
   if (options.launch) check_buses();
   if (options.launch && !replayed_.loaded().config.processes.empty())
     programs_ = std::make_unique<BranchPrograms>(
@@ -59,16 +52,17 @@ ResimulatedRun::ResimulatedRun(const Options& options, const std::string& versio
   control_.speed = 1;
   page_.start(world(), end_s(), {"recorded", programs(), programs_ != nullptr});
   replayed_.start();
-  first_ = save();
+  first_ = time_.save(experiment::History::length);
   after_step();
 }
 
 /// Programs need buses of this machine without another simulator.
 void ResimulatedRun::check_buses() {
-  if (replayed_.buses().leave_machine())
+  if (replayed_.parts().buses.leave_machine())
     throw experiment::RunError(2, "configuration",
                                "--launch: the buses of a record that is run again must not leave this machine");
-  if (const auto other = replayed_.another_simulator())
+  if (const auto other = replayed_.parts().other_simulators.look(
+          [this](std::chrono::milliseconds time) { replayed_.parts().buses.wait(time); }))
     throw experiment::RunError(4, "bus", *other + "; choose another port with --lcm-url");
 }
 
@@ -95,29 +89,9 @@ double ResimulatedRun::end_s() const {
   return sim::to_seconds(world().step_time()) * static_cast<double>(log_.usable_step());
 }
 
-/// The state of the world, that of the scores, and the size of the first.
-sim::Bytes ResimulatedRun::save() {
-  sim::Bytes saved = replayed_.save();
-  const std::uint64_t size = saved.size();
-  auto scores = sim::StateArchive::saver();
-  scoring_.visit_state(scores, experiment::History::length);
-  scores.end();
-  const sim::Bytes rest = scores.take_bytes();
-  saved.insert(saved.end(), rest.begin(), rest.end());
-  const auto* const bytes = reinterpret_cast<const std::byte*>(&size);
-  saved.insert(saved.end(), bytes, bytes + sizeof size);
-  return saved;
-}
-
-void ResimulatedRun::load(const sim::Bytes& saved) {
-  std::uint64_t size = 0;
-  std::memcpy(&size, saved.data() + saved.size() - sizeof size, sizeof size);
-  const auto scores_at = saved.begin() + static_cast<std::ptrdiff_t>(size);
-  replayed_.load({saved.begin(), scores_at});
-  const sim::Bytes rest(scores_at, saved.end() - sizeof size);
-  auto scores = sim::StateArchive::restorer(rest);
-  scoring_.visit_state(scores, experiment::History::length);
-  scores.end();
+void ResimulatedRun::go_to_start() {
+  time_.load(first_, experiment::History::length);
+  replayed_.repeat_inputs();
 }
 
 bool ResimulatedRun::at_end() const {
@@ -128,17 +102,7 @@ void ResimulatedRun::after_step() {
   view_.after_step();
   page_.after_step(world(), view_, control_);
   if (programs_) programs_->end_of_step();
-  // Snapshots for going back: one in a simulated second, if they do not take too long.
-  const auto begin = Clock::now();
-  const std::int64_t per_second = std::max<std::int64_t>(1, 1'000'000 / world().step_time().count());
-  const std::int64_t step = world().step_number();
-  if (step % per_second != 0 || begin < not_before_ || snapshots_.newest_until(step) == step) return;
-  if (const auto newest = snapshots_.newest_until(std::numeric_limits<std::int64_t>::max()); newest && *newest > step)
-    return;
-  if (programs_ && programs_->running()) return;  // its programs have no snapshots
-  snapshots_.add(step, save());
-  const auto end = Clock::now();
-  not_before_ = end + rest_per_snapshot * (end - begin);
+  if (!programs_ || !programs_->running()) time_.keep();  // programs have no snapshots
 }
 
 void ResimulatedRun::step() {
@@ -157,10 +121,10 @@ void ResimulatedRun::step() {
   control_.step_taken();
   after_step();
   if (catch_up_ && world().step_number() >= *catch_up_) arrive();
-  if (at_end() || (control_.until && world().now() >= *control_.until)) {
-    control_.clear_until();
-    control_.set_paused(true);
-  }
+  time_.stop_when_there();
+  if (!at_end()) return;
+  control_.clear_until();
+  control_.set_paused(true);
 }
 
 /// Pauses a run that cannot continue; it can be taken back.
@@ -174,14 +138,10 @@ void ResimulatedRun::fail(const std::string& why) {
 }
 
 void ResimulatedRun::serve() {
-  const auto carry_out = [this](const std::string& command, double value, const std::string& text) {
-    try {
-      return RunView::Answer{true, execute(command, value, text)};
-    } catch (const std::runtime_error& error) {
-      return RunView::Answer{false, error.what()};
-    }
-  };
-  page_.serve(world(), view_, control_, programs_ ? programs_->waits_for() : "", carry_out);
+  page_.serve(world(), view_, control_, programs_ ? programs_->waits_for() : "",
+              RunView::answering([this](const std::string& command, double value, const std::string& text) {
+                return execute(command, value, text);
+              }));
 }
 
 /// Returns whether no program is waited for.
@@ -216,8 +176,7 @@ void ResimulatedRun::run(const std::function<bool()>& goes_on) {
 }
 
 std::string ResimulatedRun::place() const {
-  return fmt::format("step {}, {:.6g} s, {}", world().step_number(), sim::to_seconds(world().now()),
-                     branched_ ? fmt::format("branch {}", control_.branch) : "record");
+  return time_.place() + (branched_ ? fmt::format(", branch {}", control_.branch) : ", record");
 }
 
 std::string ResimulatedRun::execute(const std::string& command, double value, const std::string& text) {
@@ -226,14 +185,7 @@ std::string ResimulatedRun::execute(const std::string& command, double value, co
   if (command == "where") return place();
   if (command == "resume" && faulty_) throw std::runtime_error("the run cannot continue: go back");
   if (command == "resume" && at_end()) throw std::runtime_error("the record ends here: go back, or branch");
-  if (experiment::set_pace(control_, command, value)) return place();
-  if (command == "until") {
-    if (!(value > sim::to_seconds(world().now()) && value <= 1e9))
-      throw std::runtime_error(fmt::format("'until' needs a time after now and at most 1e9 s, got {}", value));
-    control_.until = sim::from_seconds(value);
-    control_.set_paused(false);
-    return place();
-  }
+  if (const auto more = time_.execute(command, text, value)) return place() + *more;
   return change(command, value, text);
 }
 
@@ -254,7 +206,7 @@ std::string ResimulatedRun::branch(const std::string& programs_text) {
       // The record is shown from its start again.
       restarted_ = false;
       replayed_.restore_inputs();
-      load(first_);
+      go_to_start();
       control_.set_paused(true);
       page_.jump();
       throw;
@@ -269,7 +221,7 @@ std::string ResimulatedRun::branch(const std::string& programs_text) {
 /// Starts the programs at the first step of the record: they follow it up to this step, and then act.
 void ResimulatedRun::start_programs(std::int64_t step) {
   programs_->stop();
-  load(first_);
+  go_to_start();
   view_.discard();
   replayed_.drop_inputs_from(step);
   programs_->start();
@@ -283,17 +235,12 @@ void ResimulatedRun::start_branch() {
 }
 
 std::string ResimulatedRun::rewind(double seconds) {
-  if (!(seconds > 0 && seconds <= 1e9))
-    throw std::runtime_error(fmt::format("'rewind' needs a value above 0, in seconds, got {}", seconds));
-  const std::int64_t now = world().step_number();
-  const double steps = seconds * 1e6 / static_cast<double>(world().step_time().count());
-  const std::int64_t target = std::max<std::int64_t>(now - std::llround(steps), log_.begin_step());
-  if (target == now) throw std::runtime_error("already there: nothing to rewind");
+  const std::int64_t target = time_.step_before(seconds, log_.begin_step());
   faulty_ = false;
   control_.clear_until();
   control_.set_paused(true);
   if (restarted_) {
-    snapshots_.discard_after(log_.begin_step() - 1);
+    time_.forget_after(log_.begin_step() - 1);
     try {
       start_programs(target);
     } catch (const experiment::RunError& error) {
@@ -303,10 +250,14 @@ std::string ResimulatedRun::rewind(double seconds) {
     return place();
   }
   // The last state before it, then the steps from there, with the same inputs.
-  const auto base = snapshots_.newest_until(target);
-  load(base ? snapshots_.get(*base) : first_);
+  if (const auto base = time_.newest_kept_until(target)) {
+    time_.load_kept(*base);
+    replayed_.repeat_inputs();
+  } else {
+    go_to_start();
+  }
   if (branched_) {
-    snapshots_.discard_after(target);
+    time_.forget_after(target);
     changes_.erase(changes_.lower_bound(target), changes_.end());
   }
   view_.discard();

@@ -14,9 +14,9 @@
 #include "bridges/view/view_publisher.hpp"
 #include "experiment/replay/replay_log.hpp"
 #include "experiment/replay/replayed_world.hpp"
-#include "experiment/run/pacer.hpp"
 #include "experiment/score/scoring.hpp"
-#include "experiment/snapshot/snapshot_ring.hpp"
+#include "experiment/time/pacer.hpp"
+#include "experiment/time/world_time.hpp"
 #include "shoal/sim_control_request_t.hpp"
 #include "sim/run/run_control.hpp"
 #include "viewer/resimulate/branch_programs.hpp"
@@ -44,7 +44,7 @@ class ResimulatedRun {
 
   std::string url() const { return page_.url(); }
   const sim::World& world() const { return replayed_.world(); }
-  const sim::RunControl& control() const { return replayed_.control(); }
+  const sim::RunControl& control() const { return replayed_.parts().control; }
   const experiment::Scoring& scoring() const { return scoring_; }
   double end_s() const;
   /// Returns what the programs of the present branch do: `recorded commands`, `restarted programs` or `no programs`.
@@ -59,8 +59,6 @@ class ResimulatedRun {
   std::string execute(const std::string& command, double value, const std::string& text);
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   /// Returns a function that passes messages of the world on to the pages.
   experiment::ReplayedWorld::Watch page_tap();
   void check_buses();
@@ -70,8 +68,8 @@ class ResimulatedRun {
   bool programs_are_ready();
   void fail(const std::string& why);
   bool at_end() const;
-  sim::Bytes save();
-  void load(const sim::Bytes& saved);
+  /// Goes back to the first step of the record, or of its part.
+  void go_to_start();
   std::string branch(const std::string& programs);
   void start_programs(std::int64_t step);
   void start_branch();
@@ -88,9 +86,8 @@ class ResimulatedRun {
   sim::RunControl& control_;
   std::unique_ptr<BranchPrograms> programs_;  // null: branches keep the commands of the record
   experiment::Pacer pacer_;
-  experiment::SnapshotRing snapshots_;
-  sim::Bytes first_;                // state at the start
-  Clock::time_point not_before_{};  // wall time of the next snapshot
+  experiment::WorldTime time_;
+  experiment::SavedRun first_;  // state at the start
   // Requests of pages after a branch without programs, by step; with programs the world keeps them.
   std::multimap<std::int64_t, shoal::sim_control_request_t> changes_;
   std::optional<std::int64_t> catch_up_;  // step that is computed again without pace

@@ -6,8 +6,6 @@
 #include <filesystem>
 #include <limits>
 
-#include "shoal/message_codec.hpp"
-#include "shoal/sim_info_t.hpp"
 #include "viewer/log/scene_names.hpp"
 #include "viewer/page_data/look_request.hpp"
 #include "viewer/page_data/view_json.hpp"
@@ -21,11 +19,6 @@ using Json = nlohmann::json;
 /// Part of the log before a time that is read after a jump, for estimates and sounds that are still visible.
 constexpr std::int64_t before_us = 3'000'000;
 
-Json hello_json(const std::string& version, const char* source, const std::string& world, std::int64_t epoch_us) {
-  return {{"op", "hello"},  {"version", 1},         {"shoal", version}, {"source", source},
-          {"world", world}, {"epoch_us", epoch_us}, {"start_us", 0},    {"end_us", nullptr}};
-}
-
 }  // namespace
 
 LogView::LogView(const std::string& path, const LogIndex& index, const experiment::ViewOptions& options,
@@ -35,20 +28,20 @@ LogView::LogView(const std::string& path, const LogIndex& index, const experimen
       index_(index),
       reader_(path),
       looking_(path),
-      server_(web_options(options)),
-      series_(path, index, server_),
+      session_(options, PageSession::Source::messages),
+      series_(path, index, session_.server),
       times_(index.epoch_us()),
       poses_(path, index),
       now_us_(static_cast<double>(index.start_us())) {
-  messages_.set_epoch(index.epoch_us());
+  session_.messages.set_epoch(index.epoch_us());
   Json hello = hello_json(version, "log", index.world(), index.epoch_us());
   hello["name"] = name_;
   hello["start_us"] = index.start_us();
   hello["end_us"] = index.end_us();
-  server_.retain("hello", json_text(hello));
+  session_.server.retain("hello", json_text(hello));
   using bridges::foxglove::Control;
-  foxglove_.introduce(hello["name"], version, options.foxglove_control ? Control::playback : Control::none,
-                      index.epoch_us() + index.start_us(), index.epoch_us() + index.end_us());
+  session_.foxglove.introduce(hello["name"], version, options.foxglove_control ? Control::playback : Control::none,
+                              index.epoch_us() + index.start_us(), index.epoch_us() + index.end_us());
   for (const std::uint64_t offset : index.assets()) send_event_at(offset);
   seek(index.start_us());
   // The events of the whole log for the time line, after the scene to which they belong.
@@ -56,7 +49,7 @@ LogView::LogView(const std::string& path, const LogIndex& index, const experimen
   for (const LogIndex::Occasion& each : index.occasions())
     items.push_back({{"time_us", each.time_us}, {"kind", each.kind}, {"who", each.who}, {"text", each.text}});
   if (!items.empty())
-    server_.retain("events", json_text({{"op", "events"}, {"all", true}, {"items", std::move(items)}}));
+    session_.server.retain("events", json_text({{"op", "events"}, {"all", true}, {"items", std::move(items)}}));
 }
 
 void LogView::compare_with(const std::string& path, const LogIndex& index,
@@ -66,7 +59,7 @@ void LogView::compare_with(const std::string& path, const LogIndex& index,
   constexpr double always_s = std::numeric_limits<double>::infinity(), interval_s = 0.1;
   other_estimates_ = LogEstimates(path, -always_s, always_s, interval_s);
   difference_ = difference;
-  distances_.emplace(path_, index_, path, index, messages_.scene());
+  distances_.emplace(path_, index_, path, index, session_.messages.scene());
   const auto item = [](int branch, const std::string& name, const LogIndex& of) {
     return Json{{"branch", branch},          {"parent", nullptr},     {"name", name},
                 {"start_us", of.start_us()}, {"end_us", of.end_us()}, {"differs_us", nullptr}};
@@ -76,7 +69,7 @@ void LogView::compare_with(const std::string& path, const LogIndex& index,
     items[1]["differs_us"] = difference->time_us;
     if (difference->step) items[1]["differs_step"] = *difference->step;
   }
-  server_.retain(
+  session_.server.retain(
       "branches",
       json_text(
           {{"op", "branches"}, {"present", 0}, {"by", difference ? difference->by : ""}, {"items", std::move(items)}}));
@@ -103,7 +96,7 @@ void LogView::look(const bridges::ViewRequest& request) {
   past_.begin(head);
   arrange(poses->bodies, *poses->names, order, past_);
   if (branch == 1) send_other_estimates(request, poses->time_us);
-  server_.send_state_to(request.client, past_.end());
+  session_.server.send_state_to(request.client, past_.end());
 }
 
 void LogView::send_other_estimates(const bridges::ViewRequest& request, std::int64_t time_us) {
@@ -115,36 +108,36 @@ void LogView::send_other_estimates(const bridges::ViewRequest& request, std::int
     items += (items.empty() ? "" : ",") + estimate_text(vehicle, *estimate, estimate->utime - other_epoch_us_);
   }
   if (other_estimates_.vehicles().empty()) return;
-  server_.reply(request.client, "{\"op\":\"estimates\",\"branch\":1,\"items\":[" + items + "]}");
+  session_.server.reply(request.client, "{\"op\":\"estimates\",\"branch\":1,\"items\":[" + items + "]}");
 }
 
 void LogView::send_event_at(std::uint64_t offset) {
   looking_.seek(offset);
   bridges::LogEventView event;
   if (!looking_.next(event)) return;
-  messages_.take(event.channel, event.payload);
+  session_.messages.take(event.channel, event.payload);
   times_.take(event.channel, event.payload, event.utime);
-  foxglove_.message(times_.interpolated_us(), event.channel, event.payload);
+  session_.foxglove.message(times_.interpolated_us(), event.channel, event.payload);
 }
 
 void LogView::seek(std::int64_t time_us) {
   time_us = std::clamp(time_us, index_.start_us(), index_.end_us());
   now_us_ = static_cast<double>(time_us);
-  foxglove_.jump(index_.epoch_us() + std::max(index_.start_us(), time_us - before_us));
+  session_.foxglove.jump(index_.epoch_us() + std::max(index_.start_us(), time_us - before_us));
   // The state at this time, then the events shortly before it.
   send_event_at(index_.scene_at(time_us).offset);
   if (const auto scores = index_.scores_at(time_us)) send_event_at(scores->offset);
-  messages_.rewind_paths(std::numeric_limits<std::int64_t>::min());
+  session_.messages.rewind_paths(std::numeric_limits<std::int64_t>::min());
   for (const std::uint64_t offset : index_.paths_at(time_us)) send_event_at(offset);
   const std::uint64_t from = index_.bodies_at(time_us - before_us).offset;
   TrafficHistory::Point counted = index_.counts_before(from);
-  traffic_.set_counts(std::move(counted.counts));
-  traffic_.feed().discard();
+  session_.traffic.set_counts(std::move(counted.counts));
+  session_.traffic.feed().discard();
   reader_.seek(counted.offset);
   bridges::LogEventView event;
-  while (reader_.next(event) && event.offset < from) traffic_.count(event.channel, event.payload);
+  while (reader_.next(event) && event.offset < from) session_.traffic.count(event.channel, event.payload);
   reader_.seek(from);
-  messages_.mark_jump();
+  session_.messages.mark_jump();
   play_to(time_us);
   status_is_old_ = true;
 }
@@ -154,14 +147,15 @@ void LogView::play_to(std::int64_t time_us) {
   bridges::LogEventView event;
   while (reader_.next(event)) {
     // Events were retained for the whole log.
-    if (event.channel != "sim.event" && event.channel != "sim.asset") messages_.take(event.channel, event.payload);
+    if (event.channel != "sim.event" && event.channel != "sim.asset")
+      session_.messages.take(event.channel, event.payload);
     times_.take(event.channel, event.payload, event.utime);
-    traffic_.take(event.channel, event.payload, times_.steady_us() - index_.epoch_us());
-    if (event.channel != "sim.asset") foxglove_.message(times_.interpolated_us(), event.channel, event.payload);
+    session_.traffic.take(event.channel, event.payload, times_.steady_us() - index_.epoch_us());
+    if (event.channel != "sim.asset") session_.foxglove.message(times_.interpolated_us(), event.channel, event.payload);
     if (event.offset >= last) break;
   }
-  messages_.set_pace(static_cast<float>(speed_), paused_);
-  messages_.flush();
+  session_.messages.set_pace(static_cast<float>(speed_), paused_);
+  session_.messages.flush();
 }
 
 void LogView::fill_feed() {
@@ -172,23 +166,23 @@ void LogView::fill_feed() {
   bridges::LogEventView event;
   while (looking_.next(event) && event.offset <= last) {
     times.take(event.channel, event.payload, event.utime);
-    traffic_.feed().take(event.channel, event.payload, times.steady_us() - index_.epoch_us());
+    session_.traffic.feed().take(event.channel, event.payload, times.steady_us() - index_.epoch_us());
   }
 }
 
 void LogView::send_distances() {
   constexpr std::chrono::milliseconds slice{8};
   if (!distances_ || !distances_->compute(std::chrono::steady_clock::now() + slice)) return;
-  server_.retain("distances", distances_->text(difference_));
+  session_.server.retain("distances", distances_->text(difference_));
   distances_.reset();
 }
 
 void LogView::advance(double wall_s) {
   send_distances();
-  while (const auto request = server_.take_request()) handle(*request);
+  while (const auto request = session_.server.take_request()) handle(*request);
   serve_foxglove();
   // A page that has just opened gets the present state.
-  const int clients = server_.clients() + foxglove_.clients();
+  const int clients = session_.server.clients() + session_.foxglove.clients();
   if (clients > clients_) seek(static_cast<std::int64_t>(now_us_));
   clients_ = clients;
   const auto end = static_cast<double>(index_.end_us());
@@ -201,25 +195,25 @@ void LogView::advance(double wall_s) {
   } else if (!paused_ && loop_ && clients > 0) {
     seek(index_.start_us());
   }
-  traffic_.flush(static_cast<std::int64_t>(now_us_), messages_.scene(), messages_.scene_number());
+  session_.flush_traffic(static_cast<std::int64_t>(now_us_));
   constexpr double status_interval_s = 1;
   since_status_s_ += wall_s;
   if (status_is_old_ || since_status_s_ > status_interval_s) send_status();
 }
 
 void LogView::serve_foxglove() {
-  foxglove_.serve([this] { return foxglove_state(); },
-                  [this](const FoxgloveView::Request& request) -> FoxgloveView::Answer {
-                    if (request.kind != FoxgloveView::Request::Kind::playback)
-                      return {false, "this is a log, which cannot be controlled"};
-                    play_foxglove(request.playback);
-                    return {true, ""};
-                  });
+  session_.foxglove.serve([this] { return foxglove_state(); },
+                          [this](const FoxgloveView::Request& request) -> FoxgloveView::Answer {
+                            if (request.kind != FoxgloveView::Request::Kind::playback)
+                              return {false, "this is a log, which cannot be controlled"};
+                            play_foxglove(request.playback);
+                            return {true, ""};
+                          });
   // While nothing is played, new subscriptions need the messages of the present time.
-  const bool is_new = foxglove_.take_subscribed();
+  const bool is_new = session_.foxglove.take_subscribed();
   if (is_new && foxglove_state().status != FoxgloveView::State::Status::playing)
     seek(static_cast<std::int64_t>(now_us_));
-  foxglove_.show_time(index_.epoch_us() + static_cast<std::int64_t>(now_us_));
+  session_.foxglove.show_time(index_.epoch_us() + static_cast<std::int64_t>(now_us_));
 }
 
 FoxgloveView::State LogView::foxglove_state() const {
@@ -243,20 +237,20 @@ void LogView::send_status() {
   since_status_s_ = 0;
   const bool at_end = now_us_ >= static_cast<double>(index_.end_us());
   // A log that is at its end stands still, whatever was chosen.
-  server_.retain("status", json_text({{"op", "status"},
-                                      {"time_us", static_cast<std::int64_t>(now_us_)},
-                                      {"step", nullptr},
-                                      {"branch", 0},
-                                      {"paused", paused_ || at_end},
-                                      {"speed", speed_},
-                                      {"rate", paused_ || at_end ? 0 : speed_},
-                                      {"waits_for", ""},
-                                      {"ended", nullptr}}));
+  session_.server.retain("status", json_text({{"op", "status"},
+                                              {"time_us", static_cast<std::int64_t>(now_us_)},
+                                              {"step", nullptr},
+                                              {"branch", 0},
+                                              {"paused", paused_ || at_end},
+                                              {"speed", speed_},
+                                              {"rate", paused_ || at_end ? 0 : speed_},
+                                              {"waits_for", ""},
+                                              {"ended", nullptr}}));
 }
 
 void LogView::handle(const bridges::ViewRequest& request) {
   if (request.op == "series") return series_.request(request);
-  if (traffic_.handle(request)) {
+  if (session_.traffic.handle(request)) {
     if (request.op == "subscribe") fill_feed();
     return;
   }
@@ -278,89 +272,14 @@ void LogView::handle(const bridges::ViewRequest& request) {
       if (!paused_ && now_us_ >= static_cast<double>(index_.end_us())) seek(index_.start_us());
       status_is_old_ = true;
     } else if (request.op == "control") {
-      server_.reply(request.client, json_text({{"op", "reply"},
-                                               {"id", message.value("id", Json())},
-                                               {"ok", false},
-                                               {"text", "this is a log, which cannot be controlled"}}));
+      refuse(session_.server, request, "this is a log, which cannot be controlled");
     }
   } catch (const Json::exception&) {
-    server_.reply(request.client,
-                  json_text({{"op", "error"}, {"text", "'" + request.op + "' has a value of a wrong kind"}}));
+    session_.server.reply(request.client,
+                          json_text({{"op", "error"}, {"text", "'" + request.op + "' has a value of a wrong kind"}}));
   } catch (const std::runtime_error& error) {
-    server_.reply(request.client, json_text({{"op", "error"}, {"text", error.what()}}));
+    session_.server.reply(request.client, json_text({{"op", "error"}, {"text", error.what()}}));
   }
-}
-
-BusView::BusView(const experiment::ViewOptions& options, const std::string& version, const std::string& bus)
-    : server_(web_options(options)), version_(version), bus_(bus) {
-  send_hello();
-  foxglove_.introduce(bus, version, bridges::foxglove::Control::none);
-}
-
-void BusView::send_hello() {
-  Json hello = hello_json(version_, "bus", world_.empty() ? bus_ : world_, messages_.epoch_us());
-  hello["name"] = bus_;
-  server_.retain("hello", json_text(hello));
-}
-
-void BusView::message(std::string_view channel, std::span<const std::byte> payload) {
-  messages_.take(channel, payload);
-  if (channel == "sim.clock" || channel == "sim.bodies")
-    if (const auto stamp = stamp_of(payload)) now_us_ = *stamp - messages_.epoch_us();
-  traffic_.take(channel, payload, now_us_);
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  times_.take(channel, payload, std::chrono::duration_cast<std::chrono::microseconds>(now).count());
-  const std::int64_t utime = times_.interpolated_us();
-  constexpr std::int64_t disorder_us = 500'000;  // of datagrams, and of the two clocks
-  if (utime < newest_utime_ - disorder_us) {
-    foxglove_.jump(utime);
-    newest_utime_ = utime;
-  }
-  newest_utime_ = std::max(newest_utime_, utime);
-  foxglove_.message(utime, channel, payload);
-  if (channel != "sim.info") return;
-  try {
-    const auto info = shoal::decode<shoal::sim_info_t>(payload, shoal::Finite::any);
-    if (std::exchange(world_, info.world) != info.world) send_hello();
-  } catch (const shoal::MessageError&) {  // counted by take()
-  }
-}
-
-void BusView::flush() {
-  while (const auto request = server_.take_request()) {
-    if (request->op == "left") messages_.page_left();
-    if (traffic_.handle(*request) || request->op != "control") continue;
-    const Json message = Json::parse(request->text, nullptr, false);
-    server_.reply(request->client,
-                  json_text({{"op", "reply"},
-                             {"id", message.is_object() ? message.value("id", Json()) : Json()},
-                             {"ok", false},
-                             {"text", "this page watches a bus; steer the run with 'shoal control'"}}));
-  }
-  messages_.flush();
-  traffic_.flush(now_us_, messages_.scene(), messages_.scene_number());
-  foxglove_.show_time(newest_utime_);
-  constexpr std::chrono::milliseconds status_interval{500};
-  if (Clock::now() - status_at_ > status_interval) send_status();
-}
-
-void BusView::send_status() {
-  const Clock::time_point now = Clock::now();
-  const double wall_s = std::chrono::duration<double>(now - status_at_).count();
-  const double simulated_s = 1e-6 * static_cast<double>(messages_.newest_us() - status_us_);
-  constexpr double max_wall_s = 5;  // since the status before: else there was none
-  const bool known = wall_s < max_wall_s && simulated_s >= 0;
-  status_at_ = now;
-  status_us_ = messages_.newest_us();
-  server_.retain("status", json_text({{"op", "status"},
-                                      {"time_us", messages_.newest_us()},
-                                      {"step", nullptr},
-                                      {"branch", messages_.branch()},
-                                      {"paused", known && simulated_s == 0},
-                                      {"speed", nullptr},
-                                      {"rate", known ? simulated_s / wall_s : 0},
-                                      {"waits_for", messages_.has_scene() ? "" : "waits for sim.scene"},
-                                      {"ended", nullptr}}));
 }
 
 }  // namespace viewer

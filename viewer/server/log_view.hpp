@@ -1,23 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <string>
 
 #include "bridges/log/event_log.hpp"
-#include "bridges/web/web_server.hpp"
 #include "viewer/estimates/log_estimates.hpp"
 #include "viewer/log/log_difference.hpp"
 #include "viewer/log/log_distances.hpp"
 #include "viewer/log/log_index.hpp"
 #include "viewer/log/log_poses.hpp"
 #include "viewer/log/message_times.hpp"
-#include "viewer/server/foxglove_view.hpp"
 #include "viewer/server/log_series.hpp"
-#include "viewer/server/page_traffic.hpp"
-#include "viewer/server/run_view.hpp"
-#include "viewer/server/view_messages.hpp"
+#include "viewer/server/page_session.hpp"
 
 namespace viewer {
 
@@ -28,7 +23,7 @@ class LogView {
   LogView(const std::string& path, const LogIndex& index, const experiment::ViewOptions& options,
           const std::string& version);
 
-  std::string url() const { return server_.url(); }
+  std::string url() const { return session_.server.url(); }
   /// Shows the bodies of another log at the same time, as branch 1; before the first advance().  `difference`: where
   /// the two logs differ first.
   void compare_with(const std::string& path, const LogIndex& index, const std::optional<LogDifference>& difference);
@@ -56,11 +51,8 @@ class LogView {
   const std::string path_, name_;
   const LogIndex& index_;
   bridges::EventLogReader reader_, looking_;
-  bridges::WebServer server_;
-  ViewMessages messages_{server_, ViewMessages::Frames::from_bodies};
-  PageTraffic traffic_{server_, MessageFeed::Past::forgotten};
+  PageSession session_;
   LogSeries series_;
-  FoxgloveView foxglove_{server_};
   MessageTimes times_;
   LogPoses poses_;                 // for the requests `look`
   std::optional<LogPoses> other_;  // of the log that this one is compared with
@@ -75,37 +67,6 @@ class LogView {
   int clients_ = 0;
   bool status_is_old_ = true;
   double since_status_s_ = 0;
-};
-
-/// Live page of what is on a bus: of a run in another process.
-class BusView {
- public:
-  BusView(const experiment::ViewOptions& options, const std::string& version, const std::string& bus);
-
-  std::string url() const { return server_.url(); }
-  void message(std::string_view channel, std::span<const std::byte> payload);
-  /// Sends the newest state, and answers the requests of the pages.  Call some thirty times per second.
-  void flush();
-  bool has_scene() const { return messages_.has_scene(); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-
-  void send_hello();
-  void send_status();
-
-  bridges::WebServer server_;
-  ViewMessages messages_{server_, ViewMessages::Frames::from_bodies};
-  PageTraffic traffic_{server_, MessageFeed::Past::forgotten};
-  std::int64_t now_us_ = 0;
-  FoxgloveView foxglove_{server_};
-  MessageTimes times_;
-  std::int64_t newest_utime_ = 0;
-  const std::string version_, bus_;
-  std::string world_;
-  // Used to measure the rate of simulated time.
-  Clock::time_point status_at_{};
-  std::int64_t status_us_ = 0;
 };
 
 }  // namespace viewer

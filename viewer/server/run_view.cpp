@@ -20,19 +20,8 @@ constexpr std::chrono::milliseconds status_interval{200};
 
 }  // namespace
 
-bridges::WebOptions web_options(const experiment::ViewOptions& options) {
-  bridges::WebOptions web;
-  web.host = options.host;
-  web.port = options.port;
-  web.port_tries = options.port_tries;
-  web.origins = options.origins;
-  web.token = options.token;
-  web.page_directory = options.page_directory;
-  return web;
-}
-
 RunView::RunView(const experiment::ViewOptions& options, const std::string& version)
-    : server_(web_options(options)),
+    : session_(options, PageSession::Source::world),
       opened_(options.opened),
       foxglove_control_(options.foxglove_control),
       version_(version),
@@ -47,46 +36,40 @@ void RunView::announce() const {
 }
 
 void RunView::start(const sim::World& world, std::optional<double> duration_s, const Source& source) {
-  messages_.set_epoch(world.epoch_us());
-  Json hello{{"op", "hello"},
-             {"version", 1},
-             {"shoal", version_},
-             {"source", "run"},
-             {"world", world.config().name},
-             {"epoch_us", world.epoch_us()},
-             {"start_us", world.now().count()},
-             {"past", true},
-             {"end_us", nullptr}};
+  session_.messages.set_epoch(world.epoch_us());
+  Json hello = hello_json(version_, "run", world.config().name, world.epoch_us());
+  hello["start_us"] = world.now().count();
+  hello["past"] = true;
   if (duration_s && *duration_s > 0) hello["end_us"] = sim::from_seconds(*duration_s).count();
   if (!source.record.empty()) hello["record"] = source.record;
   if (!source.programs.empty()) hello["programs"] = source.programs;
   if (source.may_launch) hello["may_launch"] = true;
   if (source.record == "recorded") past_.set_programs(source.programs);
   // Retained, so that pages which connect later get it first.
-  server_.retain("hello", json_text(hello));
+  session_.server.retain("hello", json_text(hello));
   using bridges::foxglove::Control;
-  foxglove_.introduce(world.config().name, version_, foxglove_control_ ? Control::run : Control::none);
+  session_.foxglove.introduce(world.config().name, version_, foxglove_control_ ? Control::run : Control::none);
 }
 
 void RunView::message(std::string_view channel, std::span<const std::byte> payload, sim::Time at) {
-  messages_.take(channel, payload);
-  if (channel == "sim.scene") past_.set_scene(messages_.scene());
-  traffic_.take(channel, payload, at.count());
-  const std::int64_t utime = messages_.epoch_us() + at.count();
-  if (at < message_time_) foxglove_.jump(utime);
+  session_.messages.take(channel, payload);
+  if (channel == "sim.scene") past_.set_scene(session_.messages.scene());
+  session_.traffic.take(channel, payload, at.count());
+  const std::int64_t utime = session_.messages.epoch_us() + at.count();
+  if (at < message_time_) session_.foxglove.jump(utime);
   message_time_ = at;
-  foxglove_.message(utime, channel, payload);
+  session_.foxglove.message(utime, channel, payload);
 }
 
 void RunView::problem(const std::string& text) {
-  server_.send_text(json_text({{"op", "error"}, {"text", text}}));
+  session_.server.send_text(json_text({{"op", "error"}, {"text", text}}));
 }
 
 void RunView::moved(const sim::World& world, const sim::RunControl& control, bool continues,
                     const std::string& programs) {
   jump_ = true;
-  traffic_.rewind(world.now().count());
-  messages_.rewind_paths(world.now().count());
+  session_.traffic.rewind(world.now().count());
+  session_.messages.rewind_paths(world.now().count());
   past_.start_branch(control.branch, world.now().count(), last_us_, continues);
   past_.set_programs(programs);
   last_us_ = world.now().count();
@@ -94,10 +77,10 @@ void RunView::moved(const sim::World& world, const sim::RunControl& control, boo
 
 void RunView::after_step(const sim::World& world, const bridges::ViewPublisher& publisher,
                          const sim::RunControl& control) {
-  foxglove_.show_time(world.epoch_us() + world.now().count());
+  session_.foxglove.show_time(world.epoch_us() + world.now().count());
   last_us_ = world.now().count();
   past_.remember(world, publisher);
-  if (server_.clients() == 0) return;
+  if (session_.server.clients() == 0) return;
   if (Clock::now() < next_frame_ && !jump_) return;
   send_state(world, publisher, control);
 }
@@ -110,14 +93,14 @@ void RunView::send_state(const sim::World& world, const bridges::ViewPublisher& 
                 static_cast<float>(control.speed), control.paused, std::exchange(jump_, false)});
   publisher.for_each_movable(
       [&](const sim::Pose& X_WB) { frame_.add(X_WB.translation(), sim::Quaterniond(X_WB.linear())); });
-  server_.send_state(frame_.end());
-  messages_.flush();
+  session_.server.send_state(frame_.end());
+  session_.messages.flush();
   flush_traffic(world);
 }
 
 void RunView::flush_traffic(const sim::World& world) {
   next_traffic_ = Clock::now() + frame_interval;
-  traffic_.flush(world.now().count(), messages_.scene(), messages_.scene_number());
+  session_.flush_traffic(world.now().count());
 }
 
 void RunView::send_status(const sim::World& world, const sim::RunControl& control, const std::string& waits_for,
@@ -142,7 +125,7 @@ void RunView::send_status(const sim::World& world, const sim::RunControl& contro
               {"waits_for", waits_for},
               {"ended", ended.empty() ? Json(nullptr) : Json(ended)}};
   if (!log.empty()) status["log"] = log;
-  server_.retain("status", json_text(status));
+  session_.server.retain("status", json_text(status));
 }
 
 void RunView::handle(const bridges::ViewRequest& request, const Execute& execute) {
@@ -159,7 +142,7 @@ void RunView::handle(const bridges::ViewRequest& request, const Execute& execute
     reply["ok"] = false;
     reply["text"] = "'command' and 'text' must be texts, and 'value' a number";
   }
-  server_.reply(request.client, json_text(reply));
+  session_.server.reply(request.client, json_text(reply));
 }
 
 void RunView::drive(const bridges::ViewRequest& request, const sim::World& world) {
@@ -167,16 +150,14 @@ void RunView::drive(const bridges::ViewRequest& request, const sim::World& world
     if (!publish_drive_) throw experiment::DriveError("this run cannot be driven");
     drive_.take(request.client, PageDrive::read(request.text), world, Clock::now());
   } catch (const experiment::DriveError& error) {
-    const Json message = Json::parse(request.text, nullptr, false);
-    const Json id = message.is_object() ? message.value("id", Json()) : Json();
-    server_.reply(request.client, json_text({{"op", "reply"}, {"id", id}, {"ok", false}, {"text", error.what()}}));
+    refuse(session_.server, request, error.what());
   }
 }
 
 void RunView::send_forms(const sim::World& world) {
   if (forms_generation_ == world.generation()) return;
   forms_generation_ = world.generation();
-  server_.retain("forms", forms_text(world, drive_.profile()));
+  session_.server.retain("forms", forms_text(world, drive_.profile()));
 }
 
 void RunView::serve(const sim::World& world, const bridges::ViewPublisher& publisher, const sim::RunControl& control,
@@ -184,10 +165,10 @@ void RunView::serve(const sim::World& world, const bridges::ViewPublisher& publi
   constexpr int max_at_once = 50;
   bool handled = false;
   for (int i = 0; i < max_at_once; ++i) {
-    const auto request = server_.take_request();
+    const auto request = session_.server.take_request();
     if (!request) break;
-    if (request->op == "left") messages_.page_left();
-    if (traffic_.handle(*request)) continue;
+    if (request->op == "left") session_.messages.page_left();
+    if (session_.traffic.handle(*request)) continue;
     if (request->op == "left") {
       drive_.left(request->client);
       continue;
@@ -202,7 +183,7 @@ void RunView::serve(const sim::World& world, const bridges::ViewPublisher& publi
   serve_foxglove(world, publisher, control, execute);
   const Clock::time_point now = Clock::now();
   if (publish_drive_) drive_.run(world, now, control.paused, publish_drive_);
-  if (server_.clients() == 0) return;
+  if (session_.server.clients() == 0) return;
   send_forms(world);
   if (handled || now >= next_status_) send_status(world, control, waits_for, "");
   past_.update(now);
@@ -216,7 +197,7 @@ void RunView::serve(const sim::World& world, const bridges::ViewPublisher& publi
 void RunView::serve_foxglove(const sim::World& world, const bridges::ViewPublisher& publisher,
                              const sim::RunControl& control, const Execute& execute) {
   const auto utime = [&] { return world.epoch_us() + world.now().count(); };
-  foxglove_.serve(
+  session_.foxglove.serve(
       [&]() -> FoxgloveView::State {
         using Status = FoxgloveView::State::Status;
         return {control.paused ? Status::paused : Status::playing, utime(), control.speed};
@@ -227,8 +208,9 @@ void RunView::serve_foxglove(const sim::World& world, const bridges::ViewPublish
       });
   // While the run is paused, nothing else would say where the bodies are.
   if (!control.paused) return;
-  foxglove_.show_time(utime());
-  if (foxglove_.take_subscribed()) foxglove_.message(utime(), "sim.bodies", shoal::encode(publisher.bodies()));
+  session_.foxglove.show_time(utime());
+  if (session_.foxglove.take_subscribed())
+    session_.foxglove.message(utime(), "sim.bodies", shoal::encode(publisher.bodies()));
 }
 
 void RunView::ended(const sim::World& world, const sim::RunControl& control, const std::string& why,

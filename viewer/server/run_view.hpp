@@ -8,19 +8,13 @@
 #include <string>
 #include <string_view>
 
-#include "bridges/web/web_server.hpp"
 #include "experiment/run/run_page.hpp"
 #include "viewer/log/state_frame.hpp"
-#include "viewer/server/foxglove_view.hpp"
 #include "viewer/server/page_drive.hpp"
-#include "viewer/server/page_traffic.hpp"
+#include "viewer/server/page_session.hpp"
 #include "viewer/server/past_view.hpp"
-#include "viewer/server/view_messages.hpp"
 
 namespace viewer {
-
-/// Returns the settings of the server.
-bridges::WebOptions web_options(const experiment::ViewOptions& options);
 
 /// Live page of a run: sends the state of the world at up to 30 Hz of wall time, and passes requests of the pages on.
 /// The run does not depend on it; without a page it does nothing.
@@ -29,7 +23,7 @@ class RunView final : public experiment::RunPage {
   /// Starts the server.  Throws bridges::WebError, and sim::ConfigError for the profile.
   RunView(const experiment::ViewOptions& options, const std::string& version);
 
-  std::string url() const override { return server_.url(); }
+  std::string url() const override { return session_.server.url(); }
   void announce() const override;
   void allow_drive(Publish publish) override { publish_drive_ = std::move(publish); }
   void start(const sim::World& world, std::optional<double> duration_s, const Source& source) override;
@@ -39,7 +33,7 @@ class RunView final : public experiment::RunPage {
   /// Marks the next state as a jump in time, on the same branch.
   void jump() { jump_ = true; }
   /// Returns the number of pages.
-  int clients() const { return server_.clients(); }
+  int clients() const { return session_.server.clients(); }
   void message(std::string_view channel, std::span<const std::byte> payload, sim::Time at) override;
   void after_step(const sim::World& world, const bridges::ViewPublisher& publisher,
                   const sim::RunControl& control) override;
@@ -63,14 +57,11 @@ class RunView final : public experiment::RunPage {
   void drive(const bridges::ViewRequest& request, const sim::World& world);
   void send_forms(const sim::World& world);
 
-  bridges::WebServer server_;
+  PageSession session_;
   const std::function<void(const std::string& url)> opened_;
-  ViewMessages messages_{server_, ViewMessages::Frames::from_elsewhere};
-  PageTraffic traffic_{server_, MessageFeed::Past::kept};
-  FoxgloveView foxglove_{server_};
   const bool foxglove_control_;
   sim::Time message_time_{0};  // of the newest message
-  PastView past_{server_};
+  PastView past_{session_.server};
   const std::string version_;
   PageDrive drive_;
   Publish publish_drive_;                          // empty: pages do not drive

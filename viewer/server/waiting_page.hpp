@@ -3,8 +3,7 @@
 
 #include <string>
 
-#include "bridges/web/web_server.hpp"
-#include "viewer/server/run_view.hpp"
+#include "viewer/server/page_session.hpp"
 
 namespace viewer {
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "viewer/server/bus_view.hpp"
+
 #include <gmock/gmock.h>
 
 #include "tests/viewer/server/log_page.hpp"

@@ -10,13 +10,12 @@
 #include "experiment/study/load_study.hpp"
 #include "experiment/world_files/world_by_name.hpp"
 #include "messages/yaml/message_writer.hpp"
-#include "sim/bus/in_process_bus.hpp"
 #include "sim/camera/texture.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/hydrodynamics/level_speed.hpp"
 #include "sim/motion/motion.hpp"
 #include "sim/program/find_program.hpp"
-#include "sim/world/world.hpp"
+#include "sim/world/standalone_world.hpp"
 #include "sim/world_file/file_kind.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
@@ -83,8 +82,7 @@ void print_notes(sim::World& world) {
 /// Builds a world, which finds errors that reading cannot: mesh files, bodies without mass.
 std::size_t body_count(sim::LoadedWorld& loaded, sim::Warnings& warnings) {
   loaded.config.bodies_only_of_many = true;
-  sim::InProcessBus bus;
-  sim::World world(loaded.config, bus);
+  sim::StandaloneWorld world(loaded.config);
   print_notes(world);
   check_textures(loaded.config);
   experiment::warn_of_processes(loaded, warnings);

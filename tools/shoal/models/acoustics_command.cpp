@@ -10,8 +10,7 @@
 #include "messages/yaml/message_writer.hpp"
 #include "sim/acoustics/channel.hpp"
 #include "sim/acoustics/transducer.hpp"
-#include "sim/bus/in_process_bus.hpp"
-#include "sim/world/world.hpp"
+#include "sim/world/standalone_world.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tools/command_line/checks.hpp"
 #include "tools/shoal/commands/commands.hpp"
@@ -237,8 +236,7 @@ int show(AcousticsArguments& arguments) {
       (arguments.world.empty() ? sim::load_world_text(plain_world, "plain sea", arguments.load)
                                : sim::load_world(experiment::world_file(arguments.world), arguments.load))
           .config;
-  sim::InProcessBus bus;
-  const sim::World world(config, bus);
+  const sim::StandaloneWorld world(config);
   if (!world.medium().has_water()) throw CLI::ValidationError("WORLD", "has no water to carry sound");
   const verification::AcousticLink link = link_of(arguments, world);
   const std::vector<verification::AcousticPacket> packets = packets_of(arguments, modem_keys(arguments.from, world));

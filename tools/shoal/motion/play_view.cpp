@@ -20,13 +20,8 @@ bool PlayView::goes_on() {
   constexpr std::chrono::microseconds max_wait{20'000};
   sim::RunControl& control = page_.control();
   while (experiment::caught_signal() == 0) {
-    page_.serve([this](const std::string& command, double value, const std::string&) {
-      try {
-        return viewer::RunView::Answer{true, execute(command, value)};
-      } catch (const std::runtime_error& error) {
-        return viewer::RunView::Answer{false, error.what()};
-      }
-    });
+    page_.serve(viewer::RunView::answering(
+        [this](const std::string& command, double value, const std::string&) { return execute(command, value); }));
     // The motion waits for the first page, so that its beginning is seen.
     has_page_ = has_page_ || page_.clients() > 0;
     auto wait = max_wait;

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "experiment/run/pacer.hpp"
+#include "experiment/time/pacer.hpp"
 #include "motion/record/stage_view.hpp"
 
 namespace tools {

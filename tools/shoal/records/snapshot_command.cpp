@@ -6,9 +6,8 @@
 #include "experiment/snapshot/run_identity.hpp"
 #include "experiment/snapshot/snapshot_file.hpp"
 #include "messages/yaml/message_writer.hpp"
-#include "sim/bus/in_process_bus.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/world/world.hpp"
+#include "sim/world/standalone_world.hpp"
 #include "sim/world/world_state.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tools/shoal/commands/commands.hpp"
@@ -33,8 +32,7 @@ bool restores(const experiment::Snapshot& snapshot, const std::string& path) {
   experiment::allow_files(snapshot.files, load);
   load.encode_message = shoal::encode_own_message;
   const sim::LoadedWorld loaded = sim::load_world_text(snapshot.resolved_world, path, load);
-  sim::InProcessBus bus;
-  sim::World world(loaded.config, bus);
+  sim::StandaloneWorld world(loaded.config);
   world.state().restore(snapshot.state);
   const bool equal = world.state().hash() == snapshot.state_hash;
   std::cout << (equal ? "restores with the same hash\n" : "restores with a different hash\n");

@@ -23,6 +23,7 @@
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/options/view_options.hpp"
 #include "viewer/resimulate/resimulated_run.hpp"
+#include "viewer/server/bus_view.hpp"
 #include "viewer/server/log_view.hpp"
 
 namespace tools {
