@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "autonomy/cooperative/driver/land_run.hpp"
 #include "autonomy/cooperative/driver/team_navigator.hpp"
 
 namespace navigation {
@@ -36,6 +37,11 @@ class SentFrames {
     Bytes recorded, sent;
   };
   std::vector<std::deque<Frame>> by_vehicle_;
+};
+
+template <class Message>
+constexpr bool is_marine_report = requires(VehicleReports& reports, const Message& message) {
+  reports.receive(message);
 };
 
 /// One algorithm in each vehicle.
@@ -74,7 +80,7 @@ class OwnRun {
     } else if constexpr (std::is_same_v<Message, shoal::acoustic_received_t>) {
       if (const auto sender = record_.team->index_of(message.source))
         vehicle.on_range(message, frames_.find(*sender, message.data));
-    } else {
+    } else if constexpr (is_marine_report<Message>) {
       vehicle.receive(message);
     }
   }
@@ -133,7 +139,7 @@ class TeamRun {
       if (!event) return;
       ++run_.ranges;
       team_.add(index, *event);
-    } else {
+    } else if constexpr (is_marine_report<Message>) {
       const bool started = reports.setup().has_value();
       const std::vector<NavEvent> events = reports.receive(message);
       if (!started && reports.setup())
@@ -176,7 +182,11 @@ void play(const NavRecord& record, const std::vector<NavOptions>& options, Run& 
 }  // namespace
 
 OfflineRun run_offline(const NavRecord& record, const Algorithm& algorithm, const std::vector<NavOptions>& options) {
-  if (!algorithm.at_sea)
+  const bool on_land = record.team->is_on_land();
+  if (on_land && !algorithm.on_land)
+    throw std::invalid_argument(algorithm.name +
+                                " does not use relative measurements of other vehicles: it does not work on land");
+  if (!on_land && !algorithm.at_sea)
     throw std::invalid_argument(algorithm.name + " does not use acoustic ranges: it works on land only");
   OfflineRun run;
   run.algorithm = algorithm.name;
@@ -184,7 +194,9 @@ OfflineRun run_offline(const NavRecord& record, const Algorithm& algorithm, cons
   run.payload_bytes.resize(options.size());
   run.events = record.items.size();
   const AlgorithmClock clock(algorithm);
-  if (algorithm.make_team) {
+  if (on_land) {
+    LandRun(record, algorithm, options, run).play();
+  } else if (algorithm.make_team) {
     TeamRun team(record, algorithm, options, run);
     play(record, options, team);
   } else {
