@@ -8,6 +8,7 @@
 #include "autonomy/acomms/acoustic_frame.hpp"
 #include "autonomy/behaviors/helm_behavior.hpp"
 #include "shoal/acoustic_received_t.hpp"
+#include "shoal/estimate_t.hpp"
 #include "shoal/modem_received_t.hpp"
 #include "shoal/modem_send_t.hpp"
 
@@ -42,5 +43,11 @@ class DirectStates {
 Vector2d position_at(const AcousticState& state, std::int64_t utime);
 
 Motion motion_of(const AcousticState& state);
+
+/// Returns the message of a horizontal position, with its velocity and its covariance; all else in it is 0.
+shoal::estimate_t estimate_message(std::int64_t utime, const Vector2d& p_W, const Vector2d& v_W,
+                                   const Eigen::Matrix2d& P);
+/// Returns the state that a vehicle with this estimate and this number reports; above the surface its depth is 0.
+AcousticState state_of(const shoal::estimate_t& estimate, int sender);
 
 }  // namespace autonomy

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "autonomy/acomms/state_packet.hpp"
 #include "autonomy/cooperative/driver/land_team.hpp"
 
 namespace navigation {
@@ -26,13 +27,7 @@ Setup land_setup(const NavTeam& team, int own, const NavOptions& options) {
 }
 
 shoal::estimate_t land_message(const Estimate& estimate, std::int64_t utime, double heading_rad) {
-  shoal::estimate_t message{};
-  message.utime = utime;
-  for (int i = 0; i < 2; ++i) {
-    message.position_m[i] = estimate.p_W[i];
-    message.velocity_mps[i] = estimate.v_W[i];
-    for (int j = 0; j < 2; ++j) message.covariance_m2[3 * i + j] = estimate.P(i, j);
-  }
+  shoal::estimate_t message = autonomy::estimate_message(utime, estimate.p_W, estimate.v_W, estimate.P);
   message.covariance_m2[8] = 1;
   message.yaw_rad = std::remainder(heading_rad + estimate.heading_bias_rad, 2 * std::numbers::pi);
   return message;

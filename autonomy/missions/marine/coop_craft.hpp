@@ -61,7 +61,7 @@ class CoopCraft {
 
  private:
   shoal::estimate_t estimate() const;
-  std::optional<shoal::modem_send_t> state_frame();
+  std::optional<shoal::modem_send_t> state_frame(const shoal::estimate_t& estimate);
   std::string remark();
   /// Returns the own motion at a time, by the last fix.  There must be one.
   Motion motion_at(std::int64_t utime) const;
