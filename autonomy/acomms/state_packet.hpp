@@ -39,6 +39,9 @@ class DirectStates {
   std::map<int, std::string> vehicles_;  ///< by number
 };
 
+/// Sound travels 90 km in this time, beyond the range of any modem: a longer travel time is not that of a range.
+inline constexpr double max_travel_s = 60;
+
 /// Returns the position of the sender at a time of its clock, extrapolated with its speed.
 Vector2d position_at(const AcousticState& state, std::int64_t utime);
 

@@ -54,6 +54,7 @@ class OwnRun {
   }
 
   void tick(std::size_t i, std::int64_t time_us) {
+    vehicles_[i].step();
     const Time now = vehicles_[i].reports().time();
     const auto estimate = vehicles_[i].estimate();
     if (!estimate || now == estimated_at_[i]) return;
@@ -104,10 +105,12 @@ class TeamRun {
         options_(options),
         estimated_at_(options.size()) {
     for (std::size_t i = 0; i < options.size(); ++i)
-      vehicles_.emplace_back(record.team, static_cast<int>(i), options[i].start, options[i].sound);
+      vehicles_.emplace_back(record.team, static_cast<int>(i), options[i].start, options[i].sound,
+                             seconds(options[i].period_us));
   }
 
   void tick(std::size_t i, std::int64_t time_us) {
+    vehicles_[i].step();
     const Time now = vehicles_[i].time();
     if (!vehicles_[i].setup() || now == estimated_at_[i]) return;
     estimated_at_[i] = now;

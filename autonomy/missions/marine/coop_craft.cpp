@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "autonomy/missions/marine/coop_craft.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "sim/base/math.hpp"
 
 namespace autonomy {
-
-namespace {
-
-/// Maximum age of a heading.
-constexpr double oldest_yaw_s = 2;
-
-}  // namespace
 
 CoopCraft::CoopCraft(const Params& params, std::unique_ptr<HelmBehavior> behavior)
     : params_(params), behavior_(std::move(behavior)), access_(params.access, params.name) {}
@@ -47,17 +38,15 @@ void CoopCraft::receive(const shoal::acoustic_received_t& packet) {
 }
 
 void CoopCraft::receive(const shoal::ins_t& attitude) {
-  const Eigen::Quaterniond q(attitude.quat[0], attitude.quat[1], attitude.quat[2], attitude.quat[3]);
-  if (!(std::abs(q.norm() - 1) < 0.01)) return;
-  yaw_rad_ = sim::yaw_of(q.normalized().toRotationMatrix());
-  yaw_utime_ = attitude.utime;
+  attitude_.receive(attitude.utime, attitude);
 }
 
 Motion CoopCraft::motion_at(std::int64_t utime) const {
   Motion motion = *motion_;
   motion.p_W += motion.v_W * seconds(utime - motion.utime);
   motion.utime = utime;
-  if (std::abs(seconds(utime - yaw_utime_)) <= oldest_yaw_s) motion.yaw_rad = yaw_rad_;
+  if (attitude_.is_known() && !attitude_.is_lost(utime))
+    motion.yaw_rad = sim::yaw_of(attitude_.q_WB().toRotationMatrix());
   return motion;
 }
 
