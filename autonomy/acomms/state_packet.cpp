@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "autonomy/acomms/state_packet.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <utility>
@@ -61,6 +62,35 @@ Vector2d position_at(const AcousticState& state, std::int64_t utime) {
 
 Motion motion_of(const AcousticState& state) {
   return {state.utime, {state.east_m, state.north_m}, turned({state.speed_mps, 0}, state.course_rad)};
+}
+
+shoal::estimate_t estimate_message(std::int64_t utime, const Vector2d& p_W, const Vector2d& v_W,
+                                   const Eigen::Matrix2d& P) {
+  shoal::estimate_t estimate{};
+  estimate.utime = utime;
+  for (int i = 0; i < 2; ++i) {
+    estimate.position_m[i] = p_W[i];
+    estimate.velocity_mps[i] = v_W[i];
+    for (int j = 0; j < 2; ++j) estimate.covariance_m2[3 * i + j] = P(i, j);
+  }
+  return estimate;
+}
+
+AcousticState state_of(const shoal::estimate_t& estimate, int sender) {
+  const auto& P = estimate.covariance_m2;
+  const Vector2d v_W(estimate.velocity_mps[0], estimate.velocity_mps[1]);
+  AcousticState state;
+  state.sender = sender;
+  state.utime = estimate.utime;
+  state.east_m = estimate.position_m[0];
+  state.north_m = estimate.position_m[1];
+  state.depth_m = std::max(0.0, -estimate.position_m[2]);
+  state.east_std_m = std::sqrt(P[0]);
+  state.north_std_m = std::sqrt(P[4]);
+  state.correlation = std::clamp(P[1] / std::sqrt(P[0] * P[4]), -1.0, 1.0);
+  state.speed_mps = v_W.norm();
+  state.course_rad = std::atan2(v_W.y(), v_W.x());
+  return state;
 }
 
 }  // namespace autonomy

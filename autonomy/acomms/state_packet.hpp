@@ -8,6 +8,7 @@
 #include "autonomy/acomms/acoustic_frame.hpp"
 #include "autonomy/behaviors/helm_behavior.hpp"
 #include "shoal/acoustic_received_t.hpp"
+#include "shoal/estimate_t.hpp"
 #include "shoal/modem_received_t.hpp"
 #include "shoal/modem_send_t.hpp"
 
@@ -38,9 +39,18 @@ class DirectStates {
   std::map<int, std::string> vehicles_;  ///< by number
 };
 
+/// Sound travels 90 km in this time, beyond the range of any modem: a longer travel time is not that of a range.
+inline constexpr double max_travel_s = 60;
+
 /// Returns the position of the sender at a time of its clock, extrapolated with its speed.
 Vector2d position_at(const AcousticState& state, std::int64_t utime);
 
 Motion motion_of(const AcousticState& state);
+
+/// Returns the message of a horizontal position, with its velocity and its covariance; all else in it is 0.
+shoal::estimate_t estimate_message(std::int64_t utime, const Vector2d& p_W, const Vector2d& v_W,
+                                   const Eigen::Matrix2d& P);
+/// Returns the state that a vehicle with this estimate and this number reports; above the surface its depth is 0.
+AcousticState state_of(const shoal::estimate_t& estimate, int sender);
 
 }  // namespace autonomy

@@ -19,7 +19,8 @@ NavPilot::NavPilot(std::shared_ptr<const NavTeam> team, const Params& params,
     : params_(params),
       navigation_(team, index_in(*team, params.name), *params.algorithm, params.navigation),
       behavior_(std::move(behavior)),
-      access_(params.access, params.name) {}
+      access_(params.access, params.name),
+      phases_(params.navigation.start.p_W ? 0 : params.surface_s) {}
 
 void NavPilot::receive(const shoal::acoustic_received_t& packet) {
   ++counts_.frames;
@@ -28,6 +29,7 @@ void NavPilot::receive(const shoal::acoustic_received_t& packet) {
 
 NavPilot::Decision NavPilot::step() {
   Decision decision;
+  navigation_.step();
   const Time now = navigation_.reports().time();
   const std::optional<Estimate> estimate = navigation_.estimate();
   if (!estimate) {
@@ -56,9 +58,9 @@ shoal::helm_command_t NavPilot::at_rest() const {
 shoal::helm_command_t NavPilot::helm(const Estimate& estimate) {
   const Time now = navigation_.reports().time();
   shoal::helm_command_t helm = at_rest();
-  const bool known_start = params_.navigation.start.p_W.has_value();
-  const bool waits = !known_start && seconds(now - navigation_.reports().setup()->time) < params_.surface_s;
-  if (waits || behavior_->finished()) return helm;
+  using Phase = autonomy::MissionPhases::Phase;
+  if (phases_.phase() == Phase::waiting_for_fix) phases_.begin(navigation_.reports().setup()->time);
+  if (phases_.update(now, behavior_->finished()) != Phase::under_way) return helm;
   const autonomy::Course course = behavior_->steer({now, estimate.p_W, estimate.v_W});
   helm.speed_mps = course.speed_mps;
   helm.heading_rad = course.heading_rad;

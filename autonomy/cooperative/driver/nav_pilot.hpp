@@ -10,6 +10,7 @@
 #include "autonomy/behaviors/cloned.hpp"
 #include "autonomy/behaviors/helm_behavior.hpp"
 #include "autonomy/cooperative/driver/vehicle_navigation.hpp"
+#include "autonomy/missions/marine/mission_phases.hpp"
 #include "shoal/estimate_t.hpp"
 #include "shoal/helm_command_t.hpp"
 #include "shoal/modem_send_t.hpp"
@@ -61,6 +62,7 @@ class NavPilot {
   VehicleNavigation navigation_;
   autonomy::Cloned<autonomy::HelmBehavior> behavior_;
   autonomy::ChannelAccess access_;
+  autonomy::MissionPhases phases_;
   Time estimated_at_ = 0;
   Counts counts_;
 };

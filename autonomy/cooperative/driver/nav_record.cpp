@@ -9,6 +9,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "autonomy/cooperative/driver/land_team.hpp"
 #include "bridges/log/record_reader.hpp"
 #include "bridges/log/run_info.hpp"
 #include "shoal/message_codec.hpp"
@@ -47,10 +48,26 @@ std::map<std::string, NavChannel, std::less<>> channels_of(const NavTeam& team) 
     add(vehicle.pressure, decoder_of<shoal::pressure_t>());
     add(vehicle.gps, decoder_of<shoal::gps_data_t>());
     add(vehicle.usbl, decoder_of<shoal::usbl_t>());
-    add(vehicle.modem, decoder_of<shoal::acoustic_received_t>());
-    channels[vehicle.modem_command] = {static_cast<int>(i), decoder_of<shoal::modem_send_t>()};
+    add(vehicle.modem, vehicle.land ? decoder_of<shoal::modem_received_t>() : decoder_of<shoal::acoustic_received_t>());
+    if (vehicle.modem) channels[vehicle.modem_command] = {static_cast<int>(i), decoder_of<shoal::modem_send_t>()};
+    if (!vehicle.land) continue;
+    add(vehicle.land->odometry, decoder_of<shoal::odometry_t>());
+    add(vehicle.land->swarm, decoder_of<shoal::swarm_position_t>());
   }
   return channels;
+}
+
+void begin(NavRecord& record, const shoal::sim_info_t& info) {
+  record.world = info.world;
+  record.epoch_utime = info.epoch_utime;
+  const sim::WorldConfig world = world_of_text(info.resolved_config);
+  record.team = std::make_shared<NavTeam>(is_on_land(world) ? land_team_of(world) : team_of(world));
+  begin_truth(record, info.resolved_config);
+  const auto arguments = nav_arguments_of(info.resolved_config);
+  for (const NavVehicle& vehicle : record.team->vehicles) {
+    const auto own = arguments.find(vehicle.name);
+    record.arguments.push_back(own != arguments.end() ? own->second : NavArguments{});
+  }
 }
 
 }  // namespace
@@ -62,16 +79,7 @@ NavRecord read_record(const std::string& path) {
   std::map<std::string, NavChannel, std::less<>> channels;
   while (reader->next(event)) {
     if (event.channel == "sim.info" && !record.team) {
-      const auto info = bridges::read_run_info(event.payload);
-      record.world = info.world;
-      record.epoch_utime = info.epoch_utime;
-      record.team = std::make_shared<NavTeam>(team_of_text(info.resolved_config));
-      begin_truth(record, info.resolved_config);
-      const auto arguments = nav_arguments_of(info.resolved_config);
-      for (const NavVehicle& vehicle : record.team->vehicles) {
-        const auto own = arguments.find(vehicle.name);
-        record.arguments.push_back(own != arguments.end() ? own->second : NavArguments{});
-      }
+      begin(record, bridges::read_run_info(event.payload));
       channels = channels_of(*record.team);
     }
     if (!record.team) continue;
@@ -91,6 +99,8 @@ NavRecord read_record(const std::string& path) {
   }
   record.problems = reader->problems();
   if (!record.team) throw std::invalid_argument("'" + path + "' has no sim.info: it is not the record of a run");
+  // A radio carries what it must, unlike sound.
+  if (record.team->is_on_land()) record.frame_bytes = max_frame_bytes;
   return record;
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "autonomy/cooperative/driver/land_run.hpp"
 #include "autonomy/cooperative/driver/team_navigator.hpp"
 
 namespace navigation {
@@ -38,6 +39,11 @@ class SentFrames {
   std::vector<std::deque<Frame>> by_vehicle_;
 };
 
+template <class Message>
+constexpr bool is_marine_report = requires(VehicleReports& reports, const Message& message) {
+  reports.receive(message);
+};
+
 /// One algorithm in each vehicle.
 class OwnRun {
  public:
@@ -48,6 +54,7 @@ class OwnRun {
   }
 
   void tick(std::size_t i, std::int64_t time_us) {
+    vehicles_[i].step();
     const Time now = vehicles_[i].reports().time();
     const auto estimate = vehicles_[i].estimate();
     if (!estimate || now == estimated_at_[i]) return;
@@ -74,7 +81,7 @@ class OwnRun {
     } else if constexpr (std::is_same_v<Message, shoal::acoustic_received_t>) {
       if (const auto sender = record_.team->index_of(message.source))
         vehicle.on_range(message, frames_.find(*sender, message.data));
-    } else {
+    } else if constexpr (is_marine_report<Message>) {
       vehicle.receive(message);
     }
   }
@@ -98,10 +105,12 @@ class TeamRun {
         options_(options),
         estimated_at_(options.size()) {
     for (std::size_t i = 0; i < options.size(); ++i)
-      vehicles_.emplace_back(record.team, static_cast<int>(i), options[i].start, options[i].sound);
+      vehicles_.emplace_back(record.team, static_cast<int>(i), options[i].start, options[i].sound,
+                             seconds(options[i].period_us));
   }
 
   void tick(std::size_t i, std::int64_t time_us) {
+    vehicles_[i].step();
     const Time now = vehicles_[i].time();
     if (!vehicles_[i].setup() || now == estimated_at_[i]) return;
     estimated_at_[i] = now;
@@ -133,7 +142,7 @@ class TeamRun {
       if (!event) return;
       ++run_.ranges;
       team_.add(index, *event);
-    } else {
+    } else if constexpr (is_marine_report<Message>) {
       const bool started = reports.setup().has_value();
       const std::vector<NavEvent> events = reports.receive(message);
       if (!started && reports.setup())
@@ -176,7 +185,11 @@ void play(const NavRecord& record, const std::vector<NavOptions>& options, Run& 
 }  // namespace
 
 OfflineRun run_offline(const NavRecord& record, const Algorithm& algorithm, const std::vector<NavOptions>& options) {
-  if (!algorithm.at_sea)
+  const bool on_land = record.team->is_on_land();
+  if (on_land && !algorithm.on_land)
+    throw std::invalid_argument(algorithm.name +
+                                " does not use relative measurements of other vehicles: it does not work on land");
+  if (!on_land && !algorithm.at_sea)
     throw std::invalid_argument(algorithm.name + " does not use acoustic ranges: it works on land only");
   OfflineRun run;
   run.algorithm = algorithm.name;
@@ -184,7 +197,9 @@ OfflineRun run_offline(const NavRecord& record, const Algorithm& algorithm, cons
   run.payload_bytes.resize(options.size());
   run.events = record.items.size();
   const AlgorithmClock clock(algorithm);
-  if (algorithm.make_team) {
+  if (on_land) {
+    LandRun(record, algorithm, options, run).play();
+  } else if (algorithm.make_team) {
     TeamRun team(record, algorithm, options, run);
     play(record, options, team);
   } else {

@@ -20,14 +20,14 @@ struct OfflineRun {
   std::string algorithm;
   std::vector<std::vector<Published>> estimates;  ///< by vehicle
   int frames_said = 0;
-  int ranges = 0;                          ///< given to the estimators
+  int ranges = 0;                          ///< given to the estimators; on land the relative measurements
   std::vector<std::size_t> payload_bytes;  ///< said by each vehicle; 0 for an algorithm of the whole team
   double cpu_s = 0;                        ///< of the estimators and the driver
   std::size_t events = 0;
 };
 
-/// Runs an algorithm for all vehicles, with decisions as the live program makes them.  `options`: by vehicle.  Throws
-/// std::invalid_argument when the algorithm cannot work.
+/// Runs an algorithm for all vehicles, with decisions as the live program makes them, on land by LandRun.  `options`:
+/// by vehicle.  Throws std::invalid_argument when the algorithm cannot work.
 OfflineRun run_offline(const NavRecord& record, const Algorithm& algorithm, const std::vector<NavOptions>& options);
 
 }  // namespace navigation

@@ -8,7 +8,9 @@ namespace navigation {
 
 VehicleNavigation::VehicleNavigation(std::shared_ptr<const NavTeam> team, int own, const Algorithm& algorithm,
                                      const NavOptions& options)
-    : reports_(team, own, options.start, options.sound), algorithm_(&algorithm), options_(options) {
+    : reports_(team, own, options.start, options.sound, seconds(options.period_us)),
+      algorithm_(&algorithm),
+      options_(options) {
   if (!algorithm.make)
     throw std::invalid_argument(algorithm.name + " has the measurements of all vehicles: it runs with --log only");
   // A trial, so that an algorithm which cannot work is refused before the run.

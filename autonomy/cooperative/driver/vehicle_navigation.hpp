@@ -15,7 +15,7 @@ struct NavOptions {
   SoundModel sound = SoundModel::straight;
   std::size_t frame_bytes = 32;
   double gate = 10.83;               ///< 99.9 % of chi-square with 1 degree of freedom
-  std::int64_t period_us = 500'000;  ///< between two decisions from a record
+  std::int64_t period_us = 500'000;  ///< between two decisions
 };
 
 /// A vehicle that navigates by an algorithm.  A value, whose state is a function of the reports and the calls in their
@@ -35,6 +35,8 @@ class VehicleNavigation {
   }
   /// Processes a packet with a frame, which in a record differs from that in the packet.
   void on_range(const shoal::acoustic_received_t& packet, const Bytes& frame);
+  /// Counts a decision.
+  void step() { reports_.step(); }
   /// Returns the frame to transmit now; nothing before the start.
   std::optional<Bytes> make_payload();
   /// Returns the estimate of the modem's position; nothing before the start.

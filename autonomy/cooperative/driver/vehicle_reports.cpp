@@ -6,20 +6,20 @@
 #include <limits>
 #include <numbers>
 
+#include "autonomy/acomms/state_packet.hpp"
+
 namespace navigation {
+
+using autonomy::max_travel_s;
 
 namespace {
 
-constexpr double max_step_back_s = 2;
 /// After a longer time without velocities the vehicle may have stopped or gone on.
-constexpr double max_silence_s = 5;
-/// A compass counts only without an AHRS for this time.
-constexpr double oldest_attitude_s = 2;
+constexpr double max_silence_s = autonomy::ReportClock::max_gap_s;
 /// White noise of the velocity without bottom track, m^2/s: the current is unknown.
 constexpr double through_water_density = 0.09;
 /// A transmission that began later or earlier than planned is not that for which the payload was time.
 constexpr double max_late_s = 0.3;
-constexpr double max_travel_s = 60;
 constexpr double pressure_std_m = 0.1;
 /// An older relative measurement is not sent.
 constexpr double max_relative_age_s = 5;
@@ -32,19 +32,14 @@ Time microseconds(double time_s) {
   return static_cast<Time>(std::llround(1e6 * time_s));
 }
 
-double yaw_of(const Eigen::Quaterniond& q) {
-  const Eigen::Matrix3d R = q.toRotationMatrix();
-  return std::atan2(R(1, 0), R(0, 0));
-}
-
 }  // namespace
 
-VehicleReports::VehicleReports(std::shared_ptr<const NavTeam> team, int own, const Start& start, SoundModel sound)
-    : team_(std::move(team)), own_(own), start_(start), sound_(sound) {}
+VehicleReports::VehicleReports(std::shared_ptr<const NavTeam> team, int own, const Start& start, SoundModel sound,
+                               double period_s)
+    : team_(std::move(team)), own_(own), start_(start), sound_(sound), clock_(period_s) {}
 
 Time VehicleReports::note_time(std::int64_t utime) {
-  if (time_ != 0 && seconds(utime + offset_ - time_) < -max_step_back_s) offset_ = time_ - utime;
-  time_ = std::max(time_, utime + offset_);
+  offset_ -= clock_.note(utime).set_us;
   return utime + offset_;
 }
 
@@ -80,12 +75,9 @@ NavEvent VehicleReports::motion_event(Time time, const Vector2& v_W, const Matri
 std::vector<NavEvent> VehicleReports::receive(const shoal::dvl_t& dvl) {
   const Time time = note_time(dvl.utime);
   const NavVehicle& own = own_vehicle();
-  const Eigen::Vector3d over_ground(dvl.velocity_mps[0], dvl.velocity_mps[1], dvl.velocity_mps[2]);
-  const Eigen::Vector3d through_water(dvl.water_velocity_mps[0], dvl.water_velocity_mps[1], dvl.water_velocity_mps[2]);
-  const bool has_bottom = dvl.bottom_lock != 0 && over_ground.allFinite();
-  if (!has_bottom && (dvl.water_lock == 0 || !through_water.allFinite())) return {};
-  if (!has_heading_) return {};
-  const Eigen::Vector3d v_3d_W = q_WB_ * (own.dvl->X_BS.linear() * (has_bottom ? over_ground : through_water));
+  const auto velocity = autonomy::velocity_of(dvl);
+  if (!velocity || !attitude_.is_known()) return {};
+  const Eigen::Vector3d v_3d_W = lever_W(own.dvl->X_BS.linear() * velocity->v_S);
   // The mean of vectors that are turned by white noise is shorter than they are.
   const Vector2 v_W = std::exp(0.5 * own.heading_white_rad * own.heading_white_rad) * v_3d_W.head<2>();
   const double dt_s = moved_to_ ? std::clamp(seconds(time - *moved_to_), 0.0, 1.0) : 0;
@@ -97,7 +89,7 @@ std::vector<NavEvent> VehicleReports::receive(const shoal::dvl_t& dvl) {
   // White errors of velocity and heading, as densities.
   const double fom_mps = std::isfinite(dvl.fom_mps) ? dvl.fom_mps : 0;
   double density = own.velocity_share * fom_mps * fom_mps * dt_s + own.velocity_density;
-  if (!has_bottom) density += through_water_density;
+  if (!velocity->over_ground) density += through_water_density;
   const Vector2 left_W(-v_W.y(), v_W.x());
   const Matrix2 q = density * Matrix2::Identity() +
                     own.heading_white_rad * own.heading_white_rad * dt_s * (left_W * left_W.transpose());
@@ -106,20 +98,13 @@ std::vector<NavEvent> VehicleReports::receive(const shoal::dvl_t& dvl) {
 
 std::vector<NavEvent> VehicleReports::receive(const shoal::ins_t& attitude) {
   const Time time = note_time(attitude.utime);
-  const Eigen::Quaterniond q(attitude.quat[0], attitude.quat[1], attitude.quat[2], attitude.quat[3]);
-  if (!(std::abs(q.norm() - 1) < 0.01)) return {};
-  q_WB_ = q.normalized() * Eigen::Quaterniond(own_vehicle().ahrs->X_BS.linear()).conjugate();
-  attitude_time_ = time;
-  has_heading_ = true;
+  attitude_.receive(time, attitude, Eigen::Quaterniond(own_vehicle().ahrs->X_BS.linear()));
   return {};
 }
 
 std::vector<NavEvent> VehicleReports::receive(const shoal::compass_t& compass) {
   const Time time = note_time(compass.utime);
-  if (attitude_time_ && seconds(time - *attitude_time_) < oldest_attitude_s) return {};
-  if (!std::isfinite(compass.heading_true_rad)) return {};
-  q_WB_ = Eigen::AngleAxisd(0.5 * std::numbers::pi - compass.heading_true_rad, Eigen::Vector3d::UnitZ());
-  has_heading_ = true;
+  attitude_.receive(time, compass);
   return {};
 }
 
@@ -136,7 +121,7 @@ std::vector<NavEvent> VehicleReports::receive(const shoal::gps_data_t& fix) {
   const Vector2 antenna_W(fix.xyz_pos[0], fix.xyz_pos[1]);
   if (fix.gps_lock < 1 || !antenna_W.allFinite()) return {};
   const bool by_dvl = own.dvl.has_value();
-  if (by_dvl && !has_heading_) return {};
+  if (by_dvl && !attitude_.is_known()) return {};
   const Eigen::Vector3d antenna_B = own.gps->X_BS.translation();
   const Vector2 modem_W = antenna_W + lever_W(own.modem->X_BS.translation() - antenna_B).head<2>();
   std::vector<NavEvent> events;
@@ -180,7 +165,7 @@ std::vector<NavEvent> VehicleReports::receive(const shoal::usbl_t& relative) {
   const Eigen::Vector3d p_S(relative.position_m[0], relative.position_m[1], relative.position_m[2]);
   // A transponder is VEHICLE/DEVICE.
   const auto other = team_->index_of(relative.target.substr(0, relative.target.find('/')));
-  if (!setup_ || !has_heading_ || !other || *other == own_ || !p_S.allFinite()) return {};
+  if (!setup_ || !attitude_.is_known() || !other || *other == own_ || !p_S.allFinite()) return {};
   const NavVehicle& own = own_vehicle();
   const Eigen::Vector3d d_W = lever_W(own.usbl->X_BS * p_S - own.modem->X_BS.translation());
   relatives_[*other] = {time, d_W.head<2>()};
@@ -256,8 +241,8 @@ double VehicleReports::range_std_m(int sender, double range_m, double sender_dep
 
 Time VehicleReports::transmission() const {
   const Time interval = microseconds(own_vehicle().synchronous_s);
-  if (interval <= 0) return time_;
-  return (time_ - offset_ + interval - 1) / interval * interval + offset_;
+  if (interval <= 0) return time();
+  return (clock_.time() + interval - 1) / interval * interval + offset_;
 }
 
 double VehicleReports::modem_depth_m() const {
@@ -273,17 +258,12 @@ NavFrame VehicleReports::frame(Time time, Bytes payload) const {
 }
 
 shoal::estimate_t VehicleReports::message(const Estimate& estimate) const {
-  shoal::estimate_t message{};
-  message.utime = time_ - offset_;
   const Vector2 p_W = estimate.p_W - lever_W(own_vehicle().modem->X_BS.translation()).head<2>();
-  for (int i = 0; i < 2; ++i) {
-    message.position_m[i] = p_W[i];
-    message.velocity_mps[i] = estimate.v_W[i];
-    for (int j = 0; j < 2; ++j) message.covariance_m2[3 * i + j] = estimate.P(i, j);
-  }
+  shoal::estimate_t message = autonomy::estimate_message(clock_.time(), p_W, estimate.v_W, estimate.P);
   message.position_m[2] = -depth_m_;
   message.covariance_m2[8] = own_vehicle().pressure ? pressure_std_m * pressure_std_m : 1;
-  const double measured_rad = has_heading_ ? yaw_of(q_WB_) : std::atan2(v_W_.y(), v_W_.x());
+  const double measured_rad =
+      attitude_.is_known() ? sim::yaw_of(attitude_.q_WB().toRotationMatrix()) : std::atan2(v_W_.y(), v_W_.x());
   message.yaw_rad = std::remainder(measured_rad + estimate.heading_bias_rad, 2 * std::numbers::pi);
   message.clock_error_s = estimate.clock_error_s;
   return message;

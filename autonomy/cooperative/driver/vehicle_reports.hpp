@@ -10,20 +10,19 @@
 #include "autonomy/cooperative/driver/nav_frame.hpp"
 #include "autonomy/cooperative/driver/nav_team.hpp"
 #include "autonomy/cooperative/driver/navigator.hpp"
+#include "autonomy/missions/marine/motion_reports.hpp"
+#include "autonomy/missions/marine/report_clock.hpp"
 #include "shoal/acoustic_received_t.hpp"
-#include "shoal/compass_t.hpp"
-#include "shoal/dvl_t.hpp"
 #include "shoal/estimate_t.hpp"
 #include "shoal/gps_data_t.hpp"
-#include "shoal/ins_t.hpp"
 #include "shoal/pressure_t.hpp"
 #include "shoal/usbl_t.hpp"
 
 namespace navigation {
 
 /// Turns the reports of a vehicle's devices into events of navigation.  The navigated point is the modem, so that
-/// ranges need no correction.  Times are by the vehicle's clock; when that is set back by more than 2 s, the times
-/// continue.
+/// ranges need no correction.  Times are by the vehicle's clock; when that is set, the times continue
+/// (autonomy::ReportClock).
 class VehicleReports {
  public:
   /// Own index in the team; `start_W`: known position of the start, with its deviation; otherwise the first fix.
@@ -33,8 +32,10 @@ class VehicleReports {
   };
 
   VehicleReports(std::shared_ptr<const NavTeam> team, int own, const Start& start,
-                 SoundModel sound = SoundModel::straight);
+                 SoundModel sound = SoundModel::straight, double period_s = 0.5);
 
+  /// Counts a decision; there is one each `period_s`.
+  void step() { clock_.step(); }
   std::vector<NavEvent> receive(const shoal::dvl_t& dvl);
   std::vector<NavEvent> receive(const shoal::ins_t& attitude);
   std::vector<NavEvent> receive(const shoal::compass_t& compass);
@@ -57,7 +58,7 @@ class VehicleReports {
   /// Set with the event from which the estimators start.
   const std::optional<Setup>& setup() const { return setup_; }
   /// Newest stamp.
-  Time time() const { return time_; }
+  Time time() const { return clock_.time() + offset_; }
   /// Time at which a frame that is given to the modem now is transmitted.
   Time transmission() const;
   double modem_depth_m() const;
@@ -70,7 +71,7 @@ class VehicleReports {
   Time note_time(std::int64_t utime);
   void begin(Time time, const Vector2& modem_W, double std_m);
   /// Position of a device relative to another point of the vehicle, in the axes of the world.
-  Eigen::Vector3d lever_W(const Eigen::Vector3d& point_B) const { return q_WB_ * point_B; }
+  Eigen::Vector3d lever_W(const Eigen::Vector3d& point_B) const { return attitude_.q_WB() * point_B; }
   NavEvent motion_event(Time time, const Vector2& v_W, const Matrix2& q, const Eigen::Vector3d& point_B);
   double range_std_m(int sender, double range_m, double sender_depth_m) const;
   /// Whether a frame is one that its sender transmitted when it planned to.
@@ -85,11 +86,9 @@ class VehicleReports {
   Start start_;
   SoundModel sound_;
   std::optional<Setup> setup_;
-  Time time_ = 0;
-  Time offset_ = 0;  ///< of `time_` from the stamps
-  bool has_heading_ = false;
-  std::optional<Time> attitude_time_;
-  Eigen::Quaterniond q_WB_ = Eigen::Quaterniond::Identity();
+  autonomy::ReportClock clock_;
+  Time offset_ = 0;  ///< of the times from the stamps
+  autonomy::AttitudeReports attitude_;
   Vector2 v_W_ = Vector2::Zero();
   bool has_velocity_ = false;
   std::optional<Time> moved_to_;

@@ -13,6 +13,9 @@
 #include "autonomy/behaviors/cloned.hpp"
 #include "autonomy/behaviors/helm_behavior.hpp"
 #include "autonomy/filters/marine_ekf.hpp"
+#include "autonomy/missions/marine/mission_phases.hpp"
+#include "autonomy/missions/marine/motion_reports.hpp"
+#include "autonomy/missions/marine/report_clock.hpp"
 #include "shoal/acoustic_received_t.hpp"
 #include "shoal/compass_t.hpp"
 #include "shoal/dvl_t.hpp"
@@ -42,7 +45,6 @@ class CoopAuv {
     double sound_speed_mps = 1500;   ///< converts travel times to ranges
     double range_std_m = 1.0;        ///< of one range
     double sound_speed_std = 0.001;  ///< of the range
-    double yaw_offset_rad = 0;       ///< added to the measured heading
     /// Offsets from the estimated point, in the vehicle's axes.
     Eigen::Vector3d modem_B = Eigen::Vector3d::Zero(), gps_B = Eigen::Vector3d::Zero();
     double surface_s = 10;            ///< at the surface after the first fix
@@ -74,7 +76,7 @@ class CoopAuv {
     int orders = 0;          ///< executed
     int orders_refused = 0;  ///< each counted once
   };
-  enum class Phase { waiting_for_fix, at_surface, under_way, done };
+  using Phase = MissionPhases::Phase;
 
   /// Throws std::invalid_argument for a number of states that the filter does not support.
   CoopAuv(const Params& params, std::unique_ptr<HelmBehavior> behavior);
@@ -93,27 +95,23 @@ class CoopAuv {
   /// Null before the position is known.
   const MarineEkf* cooperative() const { return cooperative_ ? &*cooperative_ : nullptr; }
   const MarineEkf* dead_reckoning() const { return dead_reckoning_ ? &*dead_reckoning_ : nullptr; }
-  Phase phase() const { return phase_; }
+  Phase phase() const { return phases_.phase(); }
   const Counts& counts() const { return counts_; }
 
  private:
   void note_time(std::int64_t utime);
   void set_clock(std::int64_t by_us);
-  void coast_over_silence(std::int64_t utime);
   void start(std::int64_t utime, const Vector2d& p_W, double std_m);
   void predict(std::int64_t utime);
-  bool is_silent() const;
   Motion motion_at(const MarineEkf& filter, std::int64_t utime) const;
   const MarineEkf& steered_by() const { return params_.steer_by_dead_reckoning ? *dead_reckoning_ : *cooperative_; }
-  /// Returns a point of the vehicle relative to the estimated one
-  Eigen::Vector3d turned_into_world(const Eigen::Vector3d& point_B) const;
   void execute(const AcousticOrder& order);
   OrderRefusal refusal_of(const AcousticOrder& order) const;
   void use_range(const shoal::acoustic_received_t& packet, const AcousticState& beacon);
-  void update_phase();
   shoal::helm_command_t helm();
   shoal::estimate_t estimate(const MarineEkf& filter) const;
-  std::optional<shoal::modem_send_t> state_frame();
+  double yaw_by(const MarineEkf& filter) const;
+  std::optional<shoal::modem_send_t> state_frame(const shoal::estimate_t& estimate);
 
   Params params_;
   Cloned<HelmBehavior> behavior_;
@@ -126,18 +124,14 @@ class CoopAuv {
   std::optional<MarineEkf> cooperative_;
   std::optional<MarineEkf> dead_reckoning_;
 
-  std::int64_t utime_ = 0;  ///< newest stamp
-  int steps_in_silence_ = 0;
-  std::optional<Eigen::Quaterniond> q_WB_;
-  std::optional<std::int64_t> attitude_utime_;  ///< of an AHRS, which counts more than a compass
-  std::optional<std::int64_t> heading_utime_;   ///< of the device that reported it last
+  ReportClock clock_;
+  AttitudeReports attitude_;
   Eigen::Vector3d v_B_ = Eigen::Vector3d::Zero();
   double velocity_noise_mpsprtHz_ = 0;  ///< noise in addition to that of a DVL with bottom track
   std::optional<std::int64_t> velocity_utime_;
   double depth_m_ = 0;
   std::optional<std::int64_t> fix_utime_;
-  std::optional<std::int64_t> first_fix_utime_;
-  Phase phase_ = Phase::waiting_for_fix;
+  MissionPhases phases_;
   Counts counts_;
 };
 

@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "autonomy/missions/marine/coop_craft.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "sim/base/math.hpp"
 
 namespace autonomy {
-
-namespace {
-
-/// Maximum age of a heading.
-constexpr double oldest_yaw_s = 2;
-
-}  // namespace
 
 CoopCraft::CoopCraft(const Params& params, std::unique_ptr<HelmBehavior> behavior)
     : params_(params), behavior_(std::move(behavior)), access_(params.access, params.name) {}
@@ -47,17 +38,15 @@ void CoopCraft::receive(const shoal::acoustic_received_t& packet) {
 }
 
 void CoopCraft::receive(const shoal::ins_t& attitude) {
-  const Eigen::Quaterniond q(attitude.quat[0], attitude.quat[1], attitude.quat[2], attitude.quat[3]);
-  if (!(std::abs(q.norm() - 1) < 0.01)) return;
-  yaw_rad_ = sim::yaw_of(q.normalized().toRotationMatrix());
-  yaw_utime_ = attitude.utime;
+  attitude_.receive(attitude.utime, attitude);
 }
 
 Motion CoopCraft::motion_at(std::int64_t utime) const {
   Motion motion = *motion_;
   motion.p_W += motion.v_W * seconds(utime - motion.utime);
   motion.utime = utime;
-  if (std::abs(seconds(utime - yaw_utime_)) <= oldest_yaw_s) motion.yaw_rad = yaw_rad_;
+  if (attitude_.is_known() && !attitude_.is_lost(utime))
+    motion.yaw_rad = sim::yaw_of(attitude_.q_WB().toRotationMatrix());
   return motion;
 }
 
@@ -79,7 +68,7 @@ CoopCraft::Decision CoopCraft::step() {
     helm.speed_mps = course.speed_mps;
     helm.heading_rad = course.heading_rad;
     decision.estimate = estimate();
-    if (access_.take_turn(utime_)) decision.send = state_frame();
+    if (access_.take_turn(utime_)) decision.send = state_frame(*decision.estimate);
   }
   decision.helm = helm;  // without a fix it stops
   return decision;
@@ -96,29 +85,17 @@ std::string CoopCraft::remark() {
 }
 
 shoal::estimate_t CoopCraft::estimate() const {
-  shoal::estimate_t estimate{};
-  estimate.utime = motion_->utime;
-  for (int i = 0; i < 2; ++i) {
-    estimate.position_m[i] = motion_->p_W[i];
-    estimate.velocity_mps[i] = motion_->v_W[i];
-    estimate.covariance_m2[4 * i] = position_std_m_ * position_std_m_;
-  }
+  const Eigen::Matrix2d P = squared(position_std_m_) * Eigen::Matrix2d::Identity();
+  shoal::estimate_t estimate = estimate_message(motion_->utime, motion_->p_W, motion_->v_W, P);
   estimate.covariance_m2[8] = 1;  // it floats; waves and tide are unknown
   estimate.yaw_rad = std::atan2(motion_->v_W.y(), motion_->v_W.x());
   estimate.clock_error_s = 0;  // GPS sets the clock
   return estimate;
 }
 
-std::optional<shoal::modem_send_t> CoopCraft::state_frame() {
-  AcousticState state;
-  state.sender = params_.id;
-  state.utime = motion_->utime;
-  state.east_m = motion_->p_W.x();
-  state.north_m = motion_->p_W.y();
+std::optional<shoal::modem_send_t> CoopCraft::state_frame(const shoal::estimate_t& estimate) {
+  AcousticState state = state_of(estimate, params_.id);
   state.depth_m = params_.transducer_depth_m;
-  state.east_std_m = state.north_std_m = position_std_m_;
-  state.speed_mps = motion_->v_W.norm();
-  state.course_rad = std::atan2(motion_->v_W.y(), motion_->v_W.x());
   auto message = to_everybody(state);
   if (message) ++counts_.sent;
   return message;

@@ -10,11 +10,11 @@
 #include "autonomy/acomms/state_packet.hpp"
 #include "autonomy/behaviors/cloned.hpp"
 #include "autonomy/behaviors/helm_behavior.hpp"
+#include "autonomy/missions/marine/motion_reports.hpp"
 #include "shoal/acoustic_received_t.hpp"
 #include "shoal/estimate_t.hpp"
 #include "shoal/gps_data_t.hpp"
 #include "shoal/helm_command_t.hpp"
-#include "shoal/ins_t.hpp"
 #include "shoal/modem_send_t.hpp"
 #include "shoal/planar_lidar_t.hpp"
 
@@ -61,7 +61,7 @@ class CoopCraft {
 
  private:
   shoal::estimate_t estimate() const;
-  std::optional<shoal::modem_send_t> state_frame();
+  std::optional<shoal::modem_send_t> state_frame(const shoal::estimate_t& estimate);
   std::string remark();
   /// Returns the own motion at a time, by the last fix.  There must be one.
   Motion motion_at(std::int64_t utime) const;
@@ -74,8 +74,7 @@ class CoopCraft {
   std::optional<std::int64_t> patient_since_;
   bool remarked_ = false;
   std::optional<Motion> motion_;
-  double yaw_rad_ = unknown;
-  std::int64_t yaw_utime_ = 0;
+  AttitudeReports attitude_;
   int steps_since_fix_ = 0;
   double position_std_m_ = 0;
   Counts counts_;

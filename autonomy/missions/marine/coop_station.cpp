@@ -4,8 +4,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <iterator>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -24,17 +22,12 @@ std::string decimal(double number) {
 shoal::estimate_t estimate_of(const AcousticState& state) {
   constexpr double depth_std_m = 0.1;
   const Motion motion = motion_of(state);
-  shoal::estimate_t estimate{};
-  estimate.utime = state.utime;
-  const double position_m[] = {state.east_m, state.north_m, -state.depth_m};
-  std::copy(std::begin(position_m), std::end(position_m), estimate.position_m);
-  estimate.velocity_mps[0] = motion.v_W.x();
-  estimate.velocity_mps[1] = motion.v_W.y();
   // A covariance with a correlation of 1 is invalid.
-  const double correlation = std::clamp(state.correlation, -0.99, 0.99);
-  estimate.covariance_m2[0] = state.east_std_m * state.east_std_m;
-  estimate.covariance_m2[1] = estimate.covariance_m2[3] = correlation * state.east_std_m * state.north_std_m;
-  estimate.covariance_m2[4] = state.north_std_m * state.north_std_m;
+  const double across_m2 = std::clamp(state.correlation, -0.99, 0.99) * state.east_std_m * state.north_std_m;
+  Eigen::Matrix2d P;
+  P << squared(state.east_std_m), across_m2, across_m2, squared(state.north_std_m);
+  shoal::estimate_t estimate = estimate_message(state.utime, motion.p_W, motion.v_W, P);
+  estimate.position_m[2] = -state.depth_m;
   estimate.covariance_m2[8] = depth_std_m * depth_std_m;
   estimate.yaw_rad = state.course_rad;
   estimate.clock_error_s = unknown;

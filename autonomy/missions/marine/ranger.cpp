@@ -195,7 +195,7 @@ Ranger::Decision Ranger::step() {
   }
   if (!filter_ || phase_ == Phase::lost || phase_ == Phase::done) return decision;
   decision.estimate = estimate();
-  if (access_.take_turn(utime_)) decision.send = state_frame();
+  if (access_.take_turn(utime_)) decision.send = state_frame(*decision.estimate);
   return decision;
 }
 
@@ -226,16 +226,10 @@ shoal::helm_command_t Ranger::helm() {
 }
 
 shoal::estimate_t Ranger::estimate() const {
-  shoal::estimate_t estimate{};
-  estimate.utime = predicted_utime_.value_or(utime_);
   const double yaw_rad = filter_->yaw_rad(gyro_yaw_rad());
   const Vector2d v_W = turned({speed_mps_, 0}, yaw_rad) + filter_->current_W();
-  const Eigen::Matrix2d P = filter_->position_covariance();
-  for (int i = 0; i < 2; ++i) {
-    estimate.position_m[i] = filter_->p_W()[i];
-    estimate.velocity_mps[i] = v_W[i];
-    for (int j = 0; j < 2; ++j) estimate.covariance_m2[3 * i + j] = P(i, j);
-  }
+  shoal::estimate_t estimate =
+      estimate_message(predicted_utime_.value_or(utime_), filter_->p_W(), v_W, filter_->position_covariance());
   estimate.position_m[2] = -depth_m_;
   estimate.covariance_m2[8] = squared(depth_std_m);
   estimate.yaw_rad = yaw_rad;
@@ -243,20 +237,9 @@ shoal::estimate_t Ranger::estimate() const {
   return estimate;
 }
 
-std::optional<shoal::modem_send_t> Ranger::state_frame() {
-  const Eigen::Matrix2d P = filter_->position_covariance();
-  const Vector2d v_W = turned({speed_mps_, 0}, filter_->yaw_rad(gyro_yaw_rad())) + filter_->current_W();
-  AcousticState state;
-  state.sender = params_.id;
+std::optional<shoal::modem_send_t> Ranger::state_frame(const shoal::estimate_t& estimate) {
+  AcousticState state = state_of(estimate, params_.id);
   state.utime = utime_;
-  state.east_m = filter_->p_W().x();
-  state.north_m = filter_->p_W().y();
-  state.depth_m = std::max(0.0, depth_m_);
-  state.east_std_m = std::sqrt(P(0, 0));
-  state.north_std_m = std::sqrt(P(1, 1));
-  state.correlation = std::clamp(P(0, 1) / std::sqrt(P(0, 0) * P(1, 1)), -1.0, 1.0);
-  state.speed_mps = v_W.norm();
-  state.course_rad = std::atan2(v_W.y(), v_W.x());
   auto message = to_everybody(state);
   if (message) ++counts_.sent;
   return message;

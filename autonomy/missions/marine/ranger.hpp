@@ -79,7 +79,7 @@ class Ranger {
   RouteBehavior* route();
   shoal::helm_command_t helm();
   shoal::estimate_t estimate() const;
-  std::optional<shoal::modem_send_t> state_frame();
+  std::optional<shoal::modem_send_t> state_frame(const shoal::estimate_t& estimate);
 
   Params params_;
   RouteBehavior surface_, dive_, rise_;

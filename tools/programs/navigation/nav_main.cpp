@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <iostream>
 #include <optional>
 #include <stdexcept>
@@ -131,6 +132,7 @@ int run(int argc, char** argv) {
     throw std::invalid_argument(options.algorithm + " does not use acoustic ranges: it works on land only");
   options.pilot.navigation.frame_bytes = static_cast<std::size_t>(options.frame_bytes);
   options.pilot.navigation.sound = navigation::sound_models().at(options.sound);
+  options.pilot.navigation.period_us = std::llround(1e6 * options.participation.period_s);
   options.pilot.access = options.marine.access();
   return drive(options);
 }

@@ -8,13 +8,11 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <iostream>
 #include <stdexcept>
 #include <string_view>
 
 #include "autonomy/cooperative/driver/estimate_files.hpp"
-#include "autonomy/cooperative/land/land_offline.hpp"
 #include "tools/command_line/checks.hpp"
 #include "tools/command_line/help.hpp"
 #include "tools/command_line/name_list.hpp"
@@ -57,11 +55,12 @@ std::size_t frame_bytes_of(const OfflineOptions& options, const NavRecord& recor
   return options.frame_bytes.value_or(record.frame_bytes > 0 ? record.frame_bytes : NavOptions{}.frame_bytes);
 }
 
-/// Runs the algorithms, each by `run_one`, and prints and writes what they give.  One of several that cannot work here
-/// is left out.  Returns the exit code.
-int navigate_all(const OfflineOptions& options, const NavRecord& record,
-                 const std::function<OfflineRun(const Algorithm&)>& run_one) {
+/// Runs the algorithms, and prints and writes what they give.  One of several that cannot work here is left out.
+void navigate_all(const OfflineOptions& options, const NavRecord& record) {
   const std::size_t frame_bytes = frame_bytes_of(options, record);
+  std::vector<NavOptions> by_vehicle;
+  for (const NavArguments& arguments : record.arguments)
+    by_vehicle.push_back(options_of(options, arguments, frame_bytes));
   std::printf("%s: %zu vehicles, frames of %zu bytes\n", record.world.c_str(), record.team->vehicles.size(),
               frame_bytes);
   std::printf("%-10s %-12s %9s %8s %7s %8s\n", "algorithm", "vehicle", "rms_m", "NEES", "in_95", "samples");
@@ -69,7 +68,7 @@ int navigate_all(const OfflineOptions& options, const NavRecord& record,
   std::size_t refused = 0;
   for (const std::string& name : options.algorithms) {
     try {
-      const OfflineRun run = run_one(algorithm_named(name));
+      const OfflineRun run = run_offline(record, algorithm_named(name), by_vehicle);
       print_scores(record, run, options.from_s);
       fmt::print("{:10} {} frames, {} ranges, {:.1f} us per event\n", name, run.frames_said, run.ranges,
                  1e6 * run.cpu_s / static_cast<double>(std::max<std::size_t>(run.events, 1)));
@@ -84,7 +83,6 @@ int navigate_all(const OfflineOptions& options, const NavRecord& record,
     }
   }
   if (!options.scores.empty()) scores.write(options.scores);
-  return 0;
 }
 
 /// Refuses wrong options before the work.
@@ -110,23 +108,11 @@ void check_record(const OfflineOptions& options, const NavRecord& record) {
         fmt::format("--from-s must be at most {:g}, the end of the record, got {:g}", end_s, options.from_s));
 }
 
-int navigate(const OfflineOptions& options) {
+void navigate(const OfflineOptions& options) {
   check_options(options);
-  // The record tells whether its team is on land: there are no frames of an acoustic modem then.
-  if (const auto land = read_land_record(options.log)) {
-    check_record(options, land->run);
-    const NavOptions of_all = options_of(options, {}, frame_bytes_of(options, land->run));
-    return navigate_all(options, land->run, [&](const Algorithm& algorithm) {
-      return run_on_land(*land, algorithm, of_all, of_all.period_us);
-    });
-  }
   const NavRecord record = read_record(options.log);
   check_record(options, record);
-  std::vector<NavOptions> by_vehicle;
-  for (const NavArguments& arguments : record.arguments)
-    by_vehicle.push_back(options_of(options, arguments, frame_bytes_of(options, record)));
-  return navigate_all(options, record,
-                      [&](const Algorithm& algorithm) { return run_offline(record, algorithm, by_vehicle); });
+  navigate_all(options, record);
 }
 
 }  // namespace
@@ -165,7 +151,8 @@ int run_offline_command(int argc, const char* const* argv) {
                                    {{0, "done"}, {2, "wrong usage"}, {4, "the log cannot be read"}},
                                    {}});
   if (const auto exit_code = command_line::parse(app, argc, argv)) return *exit_code;
-  return navigate(options);
+  navigate(options);
+  return 0;
 }
 
 }  // namespace navigation

@@ -72,7 +72,24 @@ TEST(VehicleReports, MovesByTheMeanOfTheVelocitiesAtBothEnds) {
   };
   EXPECT_NEAR(speed_used(1'500'000, 1), 1, 1e-9);  // the first
   EXPECT_NEAR(speed_used(2'000'000, 2), 1.5, 1e-9);
+  for (int i = 0; i < 14; ++i) reports.step();
   EXPECT_NEAR(speed_used(9'000'000, 3), 3, 1e-9);  // after silence
+}
+
+TEST(VehicleReports, GoOnWhenTheClockIsSet) {
+  const auto team = std::make_shared<const NavTeam>(team_with("{name: pressure, type: pressure}"));
+  VehicleReports reports(team, 0, {});
+  shoal::pressure_t pressure{};
+  for (const Time set_us : {0, 100'000'000, -50'000'000}) {
+    const Time before = reports.time();
+    reports.step();
+    pressure.utime += 500'000 + set_us;
+    reports.receive(pressure);
+    // Up to a period is uncertain.
+    EXPECT_GE(reports.time(), before) << set_us;
+    EXPECT_LE(reports.time(), before + 500'000) << set_us;
+    EXPECT_EQ(reports.message({}).utime, pressure.utime);
+  }
 }
 
 TEST(VehicleReports, PlansTheTransmissionOfASynchronousModem) {

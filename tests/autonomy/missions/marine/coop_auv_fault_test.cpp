@@ -106,6 +106,7 @@ TEST(CoopAuv, PublishesHoweverSeldomItDecides) {
       EXPECT_TRUE(auv.step().estimate) << period_s;
     }
     EXPECT_FALSE(auv.step().estimate) << period_s << " s of silence";
+    EXPECT_EQ(auv.counts().clock_steps, 0) << period_s;
   }
 }
 

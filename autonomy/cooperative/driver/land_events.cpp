@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "autonomy/cooperative/land/land_events.hpp"
+#include "autonomy/cooperative/driver/land_events.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,24 +19,27 @@ Matrix2 turn_by(double angle_rad) {
 /// Reader of the messages of a record, whose headings are known.
 class LandEventMaker {
  public:
-  LandEventMaker(const LandRecord& record, LandEvents& out) : record_(record), out_(out), sent_(out.tracks.size()) {}
+  LandEventMaker(const NavRecord& record, LandEvents& out) : record_(record), out_(out), sent_(out.tracks.size()) {}
 
-  void add(const LandRecord::Item& item, const shoal::odometry_t&) { (void)item; }
-  void add(const LandRecord::Item& item, const shoal::gps_data_t& fix) {
+  /// Odometry is in the tracks, and a land vehicle has no other devices.
+  template <class Message>
+  void add(const NavRecord::Item&, const Message&) {}
+  void add(const NavRecord::Item& item, const shoal::gps_data_t& fix) {
     const Vector2 antenna_W(fix.xyz_pos[0], fix.xyz_pos[1]);
     if (fix.gps_lock < 1 || !antenna_W.allFinite()) return;
-    LandEvent event = event_of(LandEvent::Kind::fix, item, fix.utime);
+    NavEvent event = event_of(NavEvent::Kind::fix, fix.utime);
     const Vector2 lever_B = vehicle_of(item).gps->X_BS.translation().head<2>();
     event.p_W = antenna_W - turn_by(heading_rad(item, event.time)) * lever_B;
-    out_.events.push_back(event);
+    event.std_m = vehicle_of(item).fix_std_m;
+    out_.events.push_back({item.vehicle, event});
   }
-  void add(const LandRecord::Item& item, const shoal::swarm_position_t& seen) {
-    const LandVehicle& own = vehicle_of(item);
+  void add(const NavRecord::Item& item, const shoal::swarm_position_t& seen) {
+    const LandVehicle& own = *vehicle_of(item).land;
     for (std::size_t i = 0; i < seen.vehicle.size(); ++i) {
-      const auto other = record_.land.index_of(seen.vehicle[i]);
+      const auto other = record_.team->index_of(seen.vehicle[i]);
       const sim::Vector3d relative_S(seen.relative_m[i][0], seen.relative_m[i][1], seen.relative_m[i][2]);
       if (!other || *other == item.vehicle || !relative_S.allFinite()) continue;
-      LandEvent event = event_of(LandEvent::Kind::bearing, item, seen.utime);
+      NavEvent event = event_of(NavEvent::Kind::bearing, seen.utime);
       const Vector2 d_B = (own.swarm->X_BS * relative_S).head<2>();
       event.seen.time = event.time;
       event.seen.other = *other;
@@ -45,53 +48,50 @@ class LandEventMaker {
       event.seen.range_std_m = own.range_std_m.value_or(own.seen_std_m);
       event.seen.bearing_std_rad =
           own.bearing_std_rad.value_or(own.seen_std_m / std::max(event.seen.range_m, min_seen_m));
-      out_.events.push_back(event);
+      out_.events.push_back({item.vehicle, event});
     }
   }
-  void add(const LandRecord::Item& item, const shoal::modem_send_t& send) {
+  void add(const NavRecord::Item& item, const shoal::modem_send_t& send) {
     // Programs send at the simulated time of their decision.
-    LandEvent event = event_of(LandEvent::Kind::sent, item, item.time_us + record_.run.epoch_utime);
-    event.message = messages_++;
+    const NavEvent event = event_of(NavEvent::Kind::payload, item.time_us + record_.epoch_utime);
     auto& sent = sent_[static_cast<std::size_t>(item.vehicle)];
-    sent.push_back({event.message, &send});
+    sent.push_back({event.time, &send});
     if (sent.size() > max_under_way) sent.pop_front();
-    out_.events.push_back(event);
+    out_.events.push_back({item.vehicle, event});
   }
-  void add(const LandRecord::Item& item, const shoal::modem_received_t& packet) {
-    const auto sender = record_.land.index_of(packet.source);
+  void add(const NavRecord::Item& item, const shoal::modem_received_t& packet) {
+    const auto sender = record_.team->index_of(packet.source);
     if (!sender || *sender == item.vehicle) return;
     const auto& sent = sent_[static_cast<std::size_t>(*sender)];
     const auto found =
         std::find_if(sent.rbegin(), sent.rend(), [&](const auto& each) { return each.second->data == packet.data; });
     if (found == sent.rend()) return;
-    LandEvent event = event_of(LandEvent::Kind::received, item, packet.utime);
-    event.seen.other = *sender;
-    event.message = found->first;
-    out_.events.push_back(event);
+    NavEvent event = event_of(NavEvent::Kind::received, packet.utime);
+    event.received.sender = *sender;
+    event.received.payload_time = found->first;
+    out_.events.push_back({item.vehicle, event});
   }
 
  private:
   /// A message arrives before its sender has sent that many more.
   static constexpr std::size_t max_under_way = 64;
 
-  const LandVehicle& vehicle_of(const LandRecord::Item& item) const {
-    return record_.land.vehicles[static_cast<std::size_t>(item.vehicle)];
+  const NavVehicle& vehicle_of(const NavRecord::Item& item) const {
+    return record_.team->vehicles[static_cast<std::size_t>(item.vehicle)];
   }
-  double heading_rad(const LandRecord::Item& item, Time time) const {
+  double heading_rad(const NavRecord::Item& item, Time time) const {
     return out_.tracks[static_cast<std::size_t>(item.vehicle)].heading_rad(time);
   }
-  LandEvent event_of(LandEvent::Kind kind, const LandRecord::Item& item, std::int64_t utime) const {
-    LandEvent event;
+  NavEvent event_of(NavEvent::Kind kind, std::int64_t utime) const {
+    NavEvent event;
     event.kind = kind;
-    event.vehicle = item.vehicle;
-    event.time = utime - record_.run.epoch_utime;
+    event.time = utime - record_.epoch_utime;
     return event;
   }
 
-  const LandRecord& record_;
+  const NavRecord& record_;
   LandEvents& out_;
-  std::vector<std::deque<std::pair<std::size_t, const shoal::modem_send_t*>>> sent_;  ///< newest by vehicle
-  std::size_t messages_ = 0;
+  std::vector<std::deque<std::pair<Time, const shoal::modem_send_t*>>> sent_;  ///< newest by vehicle
 };
 
 }  // namespace
@@ -126,17 +126,17 @@ double OdometryTrack::heading_rad(Time time) const {
   return in->from_heading_rad + share * (in->to_heading_rad - in->from_heading_rad);
 }
 
-LandEvents events_of(const LandRecord& record) {
+LandEvents land_events_of(const NavRecord& record) {
   LandEvents out;
-  for (const LandVehicle& vehicle : record.land.vehicles) out.tracks.emplace_back(vehicle);
-  for (const LandRecord::Item& item : record.items)
+  for (const NavVehicle& vehicle : record.team->vehicles) out.tracks.emplace_back(*vehicle.land);
+  for (const NavRecord::Item& item : record.items)
     if (const auto* odometry = std::get_if<shoal::odometry_t>(&item.message))
-      out.tracks[static_cast<std::size_t>(item.vehicle)].add(odometry->utime - record.run.epoch_utime, *odometry);
+      out.tracks[static_cast<std::size_t>(item.vehicle)].add(odometry->utime - record.epoch_utime, *odometry);
   LandEventMaker maker(record, out);
-  for (const LandRecord::Item& item : record.items)
+  for (const NavRecord::Item& item : record.items)
     std::visit([&](const auto& message) { maker.add(item, message); }, item.message);
   std::stable_sort(out.events.begin(), out.events.end(),
-                   [](const LandEvent& a, const LandEvent& b) { return a.time < b.time; });
+                   [](const auto& a, const auto& b) { return a.event.time < b.event.time; });
   return out;
 }
 

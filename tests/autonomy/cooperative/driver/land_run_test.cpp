@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "autonomy/cooperative/land/land_offline.hpp"
+#include "autonomy/cooperative/driver/land_run.hpp"
 
 #include <gmock/gmock.h>
 
@@ -16,28 +16,26 @@ constexpr int end_s = 60;
 /// Record of two robots that drive east in parallel for a minute, 2 m apart.  Odometry of the first reads 5 % too
 /// little.  Each second the first sees the second, whose position at the start is known; the errors are those of the
 /// set-up.
-class LandOffline : public testing::Test {
+class LandRunOfTwo : public testing::Test {
  protected:
-  LandOffline() {
-    auto names = std::make_shared<NavTeam>();
+  LandRunOfTwo() {
+    auto team = std::make_shared<NavTeam>();
     for (int i = 0; i < 2; ++i) {
-      LandVehicle robot;
+      NavVehicle& robot = team->vehicles.emplace_back();
       robot.name = "robot" + std::to_string(i + 1);
-      robot.X_WV.translation().y() = 2 * i;
       robot.errors.heading_bias_rad = 0.01;
-      robot.along_density = i == 0 ? 0.04 : 1e-6;
-      robot.seen_std_m = 0.05;
-      robot.swarm = NavDevice{};
-      record_.land.vehicles.push_back(robot);
-      names->vehicles.emplace_back();
-      names->vehicles.back().name = robot.name;
+      LandVehicle& land = robot.land.emplace();
+      land.X_WV.translation().y() = 2 * i;
+      land.along_density = i == 0 ? 0.04 : 1e-6;
+      land.seen_std_m = 0.05;
+      land.swarm = NavDevice{};
     }
-    record_.run.team = names;
-    record_.run.truth.resize(2);
-    record_.run.end_us = end_s * second;
+    record_.team = team;
+    record_.truth.resize(2);
+    record_.end_us = end_s * second;
     for (int t = 0; t <= end_s; ++t)
       for (int i = 0; i < 2; ++i) {
-        record_.run.truth[static_cast<std::size_t>(i)].push_back({t * second, {0.5 * t, 2.0 * i, 0}});
+        record_.truth[static_cast<std::size_t>(i)].push_back({t * second, {0.5 * t, 2.0 * i, 0}});
         shoal::odometry_t odometry{};
         odometry.utime = t * second;
         odometry.x_m = (i == 0 ? 0.95 : 1) * 0.5 * t;
@@ -65,19 +63,16 @@ class LandOffline : public testing::Test {
     packet.source = "robot2";
     packet.data = send.data;
     record_.items.push_back({packet.utime, 0, packet});
-    record_.has_radio = true;
   }
   OfflineRun run(const std::string& algorithm) {
-    return run_on_land(record_, algorithm_named(algorithm), NavOptions{}, second / 2);
+    return run_offline(record_, algorithm_named(algorithm), std::vector<NavOptions>(2));
   }
-  double error_m(const OfflineRun& run) {
-    return score_of(run.estimates[0], record_.run.truth[0], 0, 30 * second).rms_m;
-  }
+  double error_m(const OfflineRun& run) { return score_of(run.estimates[0], record_.truth[0], 0, 30 * second).rms_m; }
 
-  LandRecord record_;
+  NavRecord record_;
 };
 
-TEST_F(LandOffline, DeadReckoningKeepsTheErrorOfTheWheels) {
+TEST_F(LandRunOfTwo, DeadReckoningKeepsTheErrorOfTheWheels) {
   const OfflineRun dr = run("dr");
   ASSERT_EQ(dr.estimates[0].size(), 2U * end_s + 1);
   EXPECT_NEAR(dr.estimates[0].back().message.position_m[0], 0.95 * 0.5 * end_s, 1e-6);
@@ -85,18 +80,19 @@ TEST_F(LandOffline, DeadReckoningKeepsTheErrorOfTheWheels) {
   EXPECT_NEAR(dr.estimates[1].back().message.covariance_m2[0], 0.01 + 1e-6 * end_s, 1e-6);
 }
 
-TEST_F(LandOffline, AnAlgorithmWithoutAUseOfSightsIsRefused) {
+TEST_F(LandRunOfTwo, AnAlgorithmWithoutAUseOfSightsIsRefused) {
   for (const char* algorithm : {"iu", "osm", "fls"}) EXPECT_THROW(run(algorithm), std::invalid_argument) << algorithm;
 }
 
-TEST_F(LandOffline, TheFilterOfTheRoversIsForLandOnly) {
+TEST_F(LandRunOfTwo, TheFilterOfTheRoversIsForLandOnly) {
   EXPECT_EQ(run("coop_rover").estimates[0].size(), 2U * end_s + 1);
   EXPECT_FALSE(algorithm_named("coop_rover").at_sea);
   EXPECT_TRUE(algorithm_named("naive").at_sea);
-  EXPECT_THROW(run_offline(record_.run, algorithm_named("coop_rover"), {}), std::invalid_argument);
+  record_.team = std::make_shared<NavTeam>();
+  EXPECT_THROW(run_offline(record_, algorithm_named("coop_rover"), {}), std::invalid_argument);
 }
 
-TEST_F(LandOffline, ASightHasThePayloadOfThatInstantWithoutRadio) {
+TEST_F(LandRunOfTwo, ASightHasThePayloadOfThatInstantWithoutRadio) {
   for (int t = 1; t <= end_s; ++t) relative(t);
   const double dr_m = error_m(run("dr"));
   for (const char* algorithm : {"naive", "luft", "cekf"}) {
@@ -108,7 +104,7 @@ TEST_F(LandOffline, ASightHasThePayloadOfThatInstantWithoutRadio) {
   EXPECT_EQ(run("naive").frames_said, end_s);
 }
 
-TEST_F(LandOffline, ASightAfterAMessageHasItsPayloadMovedByWhatTheSenderTraveled) {
+TEST_F(LandRunOfTwo, ASightAfterAMessageHasItsPayloadMovedByWhatTheSenderTraveled) {
   for (int t = 1; t <= end_s; ++t) relative(t);
   for (int t = 0; t < end_s; ++t) message(t);
   const OfflineRun naive = run("naive");
@@ -117,15 +113,16 @@ TEST_F(LandOffline, ASightAfterAMessageHasItsPayloadMovedByWhatTheSenderTraveled
   EXPECT_LT(error_m(naive), 0.1);
 }
 
-TEST_F(LandOffline, WithoutMessagesToASightItHasNoPayload) {
+TEST_F(LandRunOfTwo, WithoutMessagesToASightItHasNoPayload) {
   for (int t = 1; t <= end_s; ++t) relative(t);
-  record_.has_radio = true;
-  EXPECT_EQ(run("naive").frames_said, 0);
+  // One that no other robot receives: they have radio.
+  record_.items.push_back({0, 1, shoal::modem_send_t{}});
+  EXPECT_EQ(run("naive").frames_said, 1);
   EXPECT_DOUBLE_EQ(error_m(run("naive")), error_m(run("dr")));
   EXPECT_LT(error_m(run("cekf")), 0.2 * error_m(run("dr")));
 }
 
-TEST_F(LandOffline, SightsThatAreFarTooWrongAreRefusedAlsoInABurst) {
+TEST_F(LandRunOfTwo, SightsThatAreFarTooWrongAreRefusedAlsoInABurst) {
   for (int t = 1; t <= end_s; ++t) relative(t);
   const std::vector<std::string> algorithms = {"naive", "ci", "luft", "cekf"};
   std::vector<double> right_m;
@@ -139,7 +136,7 @@ TEST_F(LandOffline, SightsThatAreFarTooWrongAreRefusedAlsoInABurst) {
     EXPECT_NEAR(error_m(run(algorithms[i])), right_m[i], 1e-9) << algorithms[i];
 }
 
-TEST_F(LandOffline, ARunIsTheSameAgain) {
+TEST_F(LandRunOfTwo, ARunIsTheSameAgain) {
   for (int t = 1; t <= end_s; t += 3) relative(t);
   for (const char* algorithm : {"ci", "luft"}) {
     const OfflineRun first = run(algorithm), second_run = run(algorithm);

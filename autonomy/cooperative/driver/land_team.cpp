@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "autonomy/cooperative/land/land_team.hpp"
+#include "autonomy/cooperative/driver/land_team.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,13 +19,13 @@ constexpr double constant_time_s = 1e6;
 /// Least white error of a fix or a relative measurement.
 constexpr double min_white_m = 0.01;
 
-void set_errors(const experiment::VehicleErrors& errors, LandVehicle& vehicle) {
-  vehicle.errors.heading_bias_rad = LandTeam::start_heading_std_rad;
+void set_errors(const experiment::VehicleErrors& errors, NavVehicle& vehicle) {
+  vehicle.errors.heading_bias_rad = land_start_heading_std_rad;
   vehicle.errors.heading_walk_radprts =
       std::hypot(errors.turn_noise_radprts, errors.turn_scale_std * usual_turns_radprts);
   vehicle.errors.speed_scale = errors.speed_scale_std;
-  vehicle.along_density = errors.along_noise_mprts * errors.along_noise_mprts;
-  if (errors.sightings) vehicle.seen_std_m = std::max(errors.sightings->white_std_m, min_white_m);
+  vehicle.land->along_density = errors.along_noise_mprts * errors.along_noise_mprts;
+  if (errors.sightings) vehicle.land->seen_std_m = std::max(errors.sightings->white_std_m, min_white_m);
   if (!errors.gps) return;
   vehicle.fix_std_m = std::max(errors.gps->position.white_std, min_white_m);
   for (const experiment::SlowError& slow : errors.gps->position.slow) {
@@ -36,13 +36,13 @@ void set_errors(const experiment::VehicleErrors& errors, LandVehicle& vehicle) {
 
 /// Robots of MR.CLAM (Leung, Halpern, Barfoot and Liu, IJRR 30(8), 2011): their velocities are commands.  Larger than
 /// the median errors, because a few per cent are far larger.  Wheels do not slide sideways: 3 mm in 1 s there.
-void set_data_set_errors(LandVehicle& vehicle) {
-  vehicle.errors.heading_bias_rad = LandTeam::start_heading_std_rad;
+void set_data_set_errors(NavVehicle& vehicle) {
+  vehicle.errors.heading_bias_rad = land_start_heading_std_rad;
   vehicle.errors.heading_walk_radprts = 0.06;
-  vehicle.along_density = 0.06 * 0.06;
-  vehicle.across_density = 0.003 * 0.003;
-  vehicle.range_std_m = 0.15;
-  vehicle.bearing_std_rad = 0.05;
+  vehicle.land->along_density = 0.06 * 0.06;
+  vehicle.land->across_density = 0.003 * 0.003;
+  vehicle.land->range_std_m = 0.15;
+  vehicle.land->bearing_std_rad = 0.05;
 }
 
 /// Whether a world is an imported data set: no vehicle has a device.
@@ -51,24 +51,24 @@ bool is_data_set(const sim::WorldConfig& world) {
                      [](const sim::VehicleInstance& instance) { return instance.config->devices.empty(); });
 }
 
-std::optional<LandVehicle> land_vehicle_of(const sim::WorldConfig& world, const sim::VehicleInstance& instance) {
-  LandVehicle vehicle;
+std::optional<NavVehicle> land_vehicle_of(const sim::WorldConfig& world, const sim::VehicleInstance& instance) {
+  NavVehicle vehicle;
   vehicle.name = instance.name;
-  vehicle.X_WV = instance.X_WV;
+  vehicle.land.emplace().X_WV = instance.X_WV;
   const sim::VehicleConfig& config = *instance.config;
   if (is_data_set(world)) {
-    vehicle.odometry.channel = instance.name + ".odometry";
-    vehicle.swarm = NavDevice{instance.name + ".swarm_position"};
+    vehicle.land->odometry.channel = instance.name + ".odometry";
+    vehicle.land->swarm = NavDevice{instance.name + ".swarm_position"};
     set_data_set_errors(vehicle);
     return vehicle;
   }
   for (const sim::DeviceConfig& device : config.devices) {
     const NavDevice nav{sim::device_channel(world.channels, instance.name, device, sim::ChannelKind::report),
                         device.X_BS()};
-    if (device.type == "odometry" && vehicle.odometry.channel.empty()) {
-      vehicle.odometry = nav;
-    } else if (device.type == "swarm_position" && !vehicle.swarm) {
-      vehicle.swarm = nav;
+    if (device.type == "odometry" && vehicle.land->odometry.channel.empty()) {
+      vehicle.land->odometry = nav;
+    } else if (device.type == "swarm_position" && !vehicle.land->swarm) {
+      vehicle.land->swarm = nav;
     } else if (device.type == "gps" && !vehicle.gps) {
       vehicle.gps = nav;
     } else if (device.type == "modem" && !vehicle.modem) {
@@ -76,7 +76,7 @@ std::optional<LandVehicle> land_vehicle_of(const sim::WorldConfig& world, const 
       vehicle.modem_command = sim::device_channel(world.channels, instance.name, device, sim::ChannelKind::command);
     }
   }
-  if (vehicle.odometry.channel.empty()) return std::nullopt;
+  if (vehicle.land->odometry.channel.empty()) return std::nullopt;
   set_errors(experiment::errors_of(config, world.physics.step_s), vehicle);
   return vehicle;
 }
@@ -91,8 +91,8 @@ bool is_on_land(const sim::WorldConfig& world) {
   });
 }
 
-LandTeam land_team_of(const sim::WorldConfig& world) {
-  LandTeam team;
+NavTeam land_team_of(const sim::WorldConfig& world) {
+  NavTeam team;
   std::string others;
   for (const sim::VehicleInstance& instance : world.vehicles) {
     if (auto vehicle = land_vehicle_of(world, instance))

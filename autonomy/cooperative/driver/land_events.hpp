@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "autonomy/cooperative/driver/nav_record.hpp"
 #include "autonomy/cooperative/driver/navigator.hpp"
-#include "autonomy/cooperative/land/land_record.hpp"
 
 namespace navigation {
 
@@ -35,26 +35,21 @@ class OdometryTrack {
   std::vector<Segment> segments_;
 };
 
-/// What happened to the vehicles of a record, in the order of time, without their motion.  Times are simulated ones;
-/// the clocks of the vehicles are taken as right.
-struct LandEvent {
-  enum class Kind { fix, bearing, sent, received };
-  Kind kind = Kind::fix;
-  Time time = 0;
-  int vehicle = 0;
-  Vector2 p_W = Vector2::Zero();  ///< fix, of the vehicle's origin
-  Relative seen;                  ///< bearing: without payload
-  std::size_t message = 0;        ///< sent, received: number of the message of the record, from 0 on
-};
-
-/// The record as events and tracks.
+/// What happened to the vehicles of a record on land.  Times are simulated ones; the clocks of the vehicles are taken
+/// as right.
 struct LandEvents {
+  struct Event {
+    int vehicle = 0;
+    /// A fix of the vehicle's origin, a bearing, or a message by radio: at its transmission of kind `payload`, and at
+    /// its reception of kind `received`, whose `payload_time` is that of its transmission.
+    NavEvent event;
+  };
   std::vector<OdometryTrack> tracks;  ///< by vehicle
-  std::vector<LandEvent> events;
+  std::vector<Event> events;          ///< in the order of time
 };
 
-/// Turns messages into events.  A vehicle that is seen but not in the team, such as a landmark, is left out.
-/// `record` must outlive the result.
-LandEvents events_of(const LandRecord& record);
+/// Turns the messages of a record into events.  A vehicle that is seen but not in the team, such as a landmark, is left
+/// out.  `record` must outlive the result.
+LandEvents land_events_of(const NavRecord& record);
 
 }  // namespace navigation

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "autonomy/cooperative/land/land_events.hpp"
+#include "autonomy/cooperative/driver/land_events.hpp"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "autonomy/cooperative/driver/nav_team.hpp"
+#include "autonomy/cooperative/driver/land_team.hpp"
 
 namespace {
 
@@ -14,7 +14,7 @@ using namespace navigation;
 using testing::HasSubstr;
 
 /// Two rovers; the first is at (10, 20) and faces north, with a sensor 0.2 m ahead that looks to the left.
-LandTeam rovers() {
+NavTeam rovers() {
   return land_team_of(world_of_text(R"(
 shoal: 1
 name: yard
@@ -64,39 +64,39 @@ shoal::swarm_position_t sight_at(double time_s, const std::string& other, double
   return seen;
 }
 
-LandRecord record_of(std::vector<LandRecord::Item> items) {
-  LandRecord record;
-  record.land = rovers();
+NavRecord record_of(std::vector<NavRecord::Item> items) {
+  NavRecord record;
+  record.team = std::make_shared<NavTeam>(rovers());
   record.items = std::move(items);
   return record;
 }
 
 TEST(LandTeam, HasTheVehiclesWithOdometryAndTheErrorsOfTheirDevices) {
-  const LandTeam team = rovers();
+  const NavTeam team = rovers();
   ASSERT_EQ(team.vehicles.size(), 2U);
   EXPECT_EQ(team.index_of("crate"), std::nullopt);
-  const LandVehicle& rover = team.vehicles[0];
-  EXPECT_EQ(rover.odometry.channel, "rover1.wheels");
+  const NavVehicle& rover = team.vehicles[0];
+  EXPECT_EQ(rover.land->odometry.channel, "rover1.wheels");
   EXPECT_EQ(rover.modem_command, "rover1.radio.cmd");
-  EXPECT_EQ(rover.seen_std_m, 0.1);
+  EXPECT_EQ(rover.land->seen_std_m, 0.1);
   EXPECT_EQ(rover.fix_std_m, 0.5);
   EXPECT_EQ(rover.errors.slow_fix_m, 2);
   EXPECT_EQ(rover.errors.slow_fix_time_s, 60);
   // 0.1 m radius and 0.01 rad at 10 Hz: each wheel has 0.001 m sqrt(10) in 1 s, and the wheels are 0.4 m apart.
-  EXPECT_NEAR(rover.along_density, 0.001 * 0.001 * 10 / 2, 1e-12);
+  EXPECT_NEAR(rover.land->along_density, 0.001 * 0.001 * 10 / 2, 1e-12);
   EXPECT_NEAR(rover.errors.heading_walk_radprts, 0.001 * std::sqrt(2 * 10) / 0.4, 1e-9);
 }
 
 TEST(LandTeam, OfADataSetHasTheErrorsOfItsRobotsWhichDoNotSlideSideways) {
-  const LandTeam team = land_team_of(world_of_text(
+  const NavTeam team = land_team_of(world_of_text(
       "shoal: 1\nname: mrclam\nvehicles:\n  - {name: robot1, model: {shoal: 1, bodies: [{name: base, kinematic: true, "
       "parts: [{shape: cylinder, radius_m: 0.17, length_m: 0.1}]}]}}\n"));
   ASSERT_EQ(team.vehicles.size(), 1U);
-  const LandVehicle& robot = team.vehicles[0];
-  EXPECT_EQ(robot.odometry.channel, "robot1.odometry");
+  const NavVehicle& robot = team.vehicles[0];
+  EXPECT_EQ(robot.land->odometry.channel, "robot1.odometry");
   // In 1 s 6 cm along the track, 3 mm across.
-  EXPECT_NEAR(std::sqrt(robot.along_density), 0.06, 1e-12);
-  EXPECT_NEAR(std::sqrt(robot.across_density), 0.003, 1e-12);
+  EXPECT_NEAR(std::sqrt(robot.land->along_density), 0.06, 1e-12);
+  EXPECT_NEAR(std::sqrt(robot.land->across_density), 0.003, 1e-12);
   EXPECT_EQ(robot.errors.heading_walk_radprts, 0.06);
 }
 
@@ -113,8 +113,8 @@ TEST(LandTeam, OfNoVehicleItCanNavigateIsAnError) {
 }
 
 TEST(OdometryTrack, BeginsWithTheStartPose) {
-  const LandTeam team = rovers();
-  OdometryTrack track(team.vehicles[0]);
+  const NavTeam team = rovers();
+  OdometryTrack track(*team.vehicles[0].land);
   track.add(1'000'000, odometry_at(1, 0.5, 0, 0));
   track.add(3'000'000, odometry_at(3, 0.5, 0.4, 0.2));
   track.add(3'000'000, odometry_at(3, 9, 9, 9));
@@ -125,17 +125,17 @@ TEST(OdometryTrack, BeginsWithTheStartPose) {
   EXPECT_NEAR(track.segments()[1].v_W.x(), -0.2, 1e-12);
   EXPECT_NEAR(track.heading_rad(2'000'000), std::numbers::pi / 2 + 0.1, 1e-12);
   // The noise is along the vehicle only.
-  EXPECT_NEAR(track.segments()[0].q(1, 1), team.vehicles[0].along_density, 1e-15);
+  EXPECT_NEAR(track.segments()[0].q(1, 1), team.vehicles[0].land->along_density, 1e-15);
   EXPECT_NEAR(track.segments()[0].q(0, 0), 0, 1e-15);
 }
 
 TEST(LandEvents, OfASightAreRangeAndBearingFromTheVehicle) {
-  const LandRecord record = record_of({{1'000'000, 0, odometry_at(1, 0, 0, 0)},
-                                       {500'000, 0, sight_at(0.5, "rover2", 3, 0)},
-                                       {500'000, 0, sight_at(0.5, "landmark6", 3, 0)}});
-  const LandEvents events = events_of(record);
+  const NavRecord record = record_of({{1'000'000, 0, odometry_at(1, 0, 0, 0)},
+                                      {500'000, 0, sight_at(0.5, "rover2", 3, 0)},
+                                      {500'000, 0, sight_at(0.5, "landmark6", 3, 0)}});
+  const LandEvents events = land_events_of(record);
   ASSERT_EQ(events.events.size(), 1U);
-  const Relative& seen = events.events[0].seen;
+  const Relative& seen = events.events[0].event.seen;
   EXPECT_EQ(seen.other, 1);
   // 0.2 m ahead and 3 m to the left of a vehicle that faces north.
   EXPECT_NEAR(seen.range_m, std::hypot(3, 0.2), 1e-9);
@@ -158,13 +158,14 @@ TEST(LandEvents, OfAFixAreThePositionOfTheOriginAndOfAMessageItsSending) {
   shoal::modem_received_t unknown = packet;
   unknown.data = {9};
   const LandEvents events =
-      events_of(record_of({{200'000, 0, fix}, {300'000, 0, send}, {400'000, 1, packet}, {400'000, 1, unknown}}));
+      land_events_of(record_of({{200'000, 0, fix}, {300'000, 0, send}, {400'000, 1, packet}, {400'000, 1, unknown}}));
   ASSERT_EQ(events.events.size(), 3U);
-  EXPECT_NEAR(events.events[0].p_W.y(), 20, 1e-9);
-  EXPECT_EQ(events.events[1].kind, LandEvent::Kind::sent);
-  EXPECT_EQ(events.events[2].kind, LandEvent::Kind::received);
-  EXPECT_EQ(events.events[2].message, events.events[1].message);
-  EXPECT_EQ(events.events[2].seen.other, 0);
+  EXPECT_NEAR(events.events[0].event.p_W.y(), 20, 1e-9);
+  EXPECT_EQ(events.events[0].event.std_m, 0.5);
+  EXPECT_EQ(events.events[1].event.kind, NavEvent::Kind::payload);
+  EXPECT_EQ(events.events[2].event.kind, NavEvent::Kind::received);
+  EXPECT_EQ(events.events[2].event.received.payload_time, events.events[1].event.time);
+  EXPECT_EQ(events.events[2].event.received.sender, 0);
 }
 
 }  // namespace
