@@ -10,7 +10,7 @@
 
 #include "sim/base/math.hpp"
 #include "sim/base/step_memory.hpp"
-#include "sim/physics/motion.hpp"
+#include "sim/collision/motion.hpp"
 
 struct dxBody;  // of ODE; only the sources of physics include its headers
 struct dxGeom;

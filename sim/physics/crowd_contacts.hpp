@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "sim/base/math.hpp"
-#include "sim/physics/collider.hpp"
+#include "sim/collision/collider.hpp"
 
 namespace sim {
 

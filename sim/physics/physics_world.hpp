@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "sim/base/math.hpp"
+#include "sim/collision/contact_report.hpp"
+#include "sim/collision/motion.hpp"
 #include "sim/model/physics_config.hpp"
 #include "sim/ode/physics_fault.hpp"
 #include "sim/physics/body.hpp"
-#include "sim/physics/contact_report.hpp"
 #include "sim/physics/joint.hpp"
-#include "sim/physics/motion.hpp"
 #include "sim/scene/scene.hpp"
 
 namespace sim {

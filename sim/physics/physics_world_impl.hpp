@@ -11,14 +11,14 @@
 
 #include "sim/base/free_numbers.hpp"
 #include "sim/base/thread_pool.hpp"
+#include "sim/collision/collider.hpp"
+#include "sim/collision/group_boxes.hpp"
+#include "sim/collision/islands.hpp"
+#include "sim/collision/terrain_geom.hpp"
 #include "sim/ode/ode_library.hpp"
 #include "sim/ode/part_shape.hpp"
-#include "sim/physics/collider.hpp"
-#include "sim/physics/far_groups.hpp"
-#include "sim/physics/islands.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/physics/shard.hpp"
-#include "sim/physics/terrain_geom.hpp"
 #include "sim/rays/world_scene.hpp"
 
 namespace sim {
@@ -78,7 +78,7 @@ struct PhysicsWorld::Impl {
   std::vector<int> may_leap;  // bodies, in the order of the threads
   std::vector<Leap> leaps;
   // far_group_boxes.cpp
-  FarGroups far_groups;
+  GroupBoxes far_groups;
   std::vector<int> left_boxes;  // new groups, and those of bodies that left the box; several times the same
   std::mutex left_mutex;
   bool fixed_parts_changed = true;                   ///< some were added or removed

@@ -4,11 +4,11 @@
 #include <exception>
 #include <vector>
 
+#include "sim/collision/collider.hpp"
 #include "sim/ode/body_copy.hpp"
 #include "sim/ode/calls_at_once.hpp"
 #include "sim/ode/ode_library.hpp"
 #include "sim/physics/body.hpp"
-#include "sim/physics/collider.hpp"
 #include "sim/physics/crowd_contacts.hpp"
 #include "sim/physics/joint.hpp"
 

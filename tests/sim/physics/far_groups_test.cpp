@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Groups that are far from everything are not looked at by the collision search, and single bodies that touch nothing
 // are not stepped by ODE.  Neither may matter to what they meet, or to what rays see.
-#include "sim/physics/far_groups.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <memory>
-#include <set>
-#include <vector>
+#include <string>
 
 #include "tests/sim/physics/small_worlds.hpp"
 #include "tests/state_hash_of.hpp"
@@ -17,52 +13,6 @@
 namespace {
 
 using namespace small_worlds;
-
-sim::AlignedBox cube(double x, double half = 1) {
-  return {{x - half, -half, -half}, {x + half, half, half}};
-}
-
-TEST(FarGroups, AreThoseWhoseBoxesMeetNoOthers) {
-  sim::FarGroups groups;
-  groups.clear(5);
-  groups.set(0, cube(0));
-  groups.set(1, cube(1.5));
-  groups.set(2, cube(10));
-  groups.set(4, cube(20));
-  groups.find(std::vector{cube(20.5, 0.1)});
-  EXPECT_FALSE(groups.far(0));
-  EXPECT_FALSE(groups.far(1));
-  EXPECT_TRUE(groups.far(2));
-  EXPECT_FALSE(groups.far(3)) << "without a box";
-  EXPECT_FALSE(groups.far(4)) << "at a fixed part";
-  EXPECT_EQ(groups.count(), 1u);
-}
-
-TEST(FarGroups, AreNearToAnEndlessGround) {
-  sim::FarGroups groups;
-  groups.clear(2);
-  groups.set(0, cube(0));
-  groups.set(1, {{0, 0, 5}, {1, 1, 6}});
-  constexpr double endless = std::numeric_limits<double>::infinity();
-  groups.find(std::vector<sim::AlignedBox>{{{-endless, -endless, -endless}, {endless, endless, 0}}});
-  EXPECT_FALSE(groups.far(0));
-  EXPECT_TRUE(groups.far(1));
-}
-
-TEST(FarGroups, ComeNearWhenABoxMovesIntoTheirs) {
-  sim::FarGroups groups;
-  groups.clear(3);
-  for (const int group : {0, 1, 2}) groups.set(group, cube(10 * group));
-  groups.find({});
-  EXPECT_EQ(groups.count(), 3u);
-  std::set<int> near;
-  groups.move(0, cube(9), [&](int group) { near.insert(group); });
-  EXPECT_EQ(near, (std::set<int>{0, 1}));
-  EXPECT_TRUE(groups.far(2));
-  groups.remove(1);
-  groups.move(3, cube(11), [&](int group) { near.insert(group); });
-  EXPECT_EQ(near, (std::set<int>{0, 1, 3})) << "a new group meets the one at 9, not the removed one";
-}
 
 PhysicsConfig far_from_planets() {
   return with_step(0.01, 0);

@@ -8,9 +8,8 @@
 
 namespace sim {
 
-/// Finds the groups that are far from everything: their boxes meet no box of another group and no fixed part.
-/// Boxes are inflated, so that nothing can touch such a group until it leaves its box.
-class FarGroups {
+/// Boxes of groups.  A group is far from everything when its box meets no box of another group and no fixed part.
+class GroupBoxes {
  public:
   /// Removes all boxes; then the groups have the numbers below `groups`.
   void clear(std::size_t groups);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/physics/far_groups.hpp"
+#include "sim/collision/group_boxes.hpp"
 
 #include <algorithm>
 #include <limits>
 
 namespace sim {
 
-void FarGroups::clear(std::size_t groups) {
+void GroupBoxes::clear(std::size_t groups) {
   places_.assign(groups, -1);
   groups_.clear();
   boxes_.clear();
@@ -14,14 +14,14 @@ void FarGroups::clear(std::size_t groups) {
   count_ = 0;
 }
 
-void FarGroups::set(int group, const AlignedBox& box) {
+void GroupBoxes::set(int group, const AlignedBox& box) {
   places_[static_cast<std::size_t>(group)] = static_cast<int>(boxes_.size());
   groups_.push_back(group);
   boxes_.push_back(box);
 }
 
 /// Returns the place of a group, which is far until its box meets another one if it had none.
-int FarGroups::place_of(int group) {
+int GroupBoxes::place_of(int group) {
   const auto number = static_cast<std::size_t>(group);
   if (number >= places_.size()) places_.resize(number + 1, -1);
   if (places_[number] >= 0) return places_[number];
@@ -33,7 +33,7 @@ int FarGroups::place_of(int group) {
   return places_[number];
 }
 
-void FarGroups::remove(int group) {
+void GroupBoxes::remove(int group) {
   const auto number = static_cast<std::size_t>(group);
   if (number >= places_.size() || places_[number] < 0) return;
   const auto place = static_cast<std::size_t>(places_[number]);
@@ -44,7 +44,7 @@ void FarGroups::remove(int group) {
   places_[number] = -1;
 }
 
-void FarGroups::find(std::span<const AlignedBox> fixed) {
+void GroupBoxes::find(std::span<const AlignedBox> fixed) {
   // Fixed parts.
   endless_.clear();
   std::vector<AlignedBox> finite;
@@ -62,7 +62,7 @@ void FarGroups::find(std::span<const AlignedBox> fixed) {
   }
 }
 
-bool FarGroups::meets_fixed(const AlignedBox& box) const {
+bool GroupBoxes::meets_fixed(const AlignedBox& box) const {
   const auto meets_box = [&](const AlignedBox& other) { return other.meets(box); };
   bool meets = std::any_of(endless_.begin(), endless_.end(), meets_box);
   if (!meets) fixed_.find(box, [&](int) { meets = true; });
