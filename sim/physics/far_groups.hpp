@@ -19,8 +19,8 @@ namespace sim {
 ///   moves a body sees at once whether it left,
 /// - what it saw of fixed parts and of bodies that were placed elsewhere, when it looked last.
 ///
-/// Order within a step: update() comes first, before Collider searches for pairs.  It makes all boxes anew about once a
-/// second, or when fixed parts changed, and in other steps only those of the groups in the list.  Later in the step
+/// Order within a step: update() comes first, before Collider searches for pairs.  It makes all boxes again about once
+/// a second, or when fixed parts changed, and in other steps only those of the groups in the list.  Later in the step
 /// threads call note_left() with the bodies that left their boxes.  The next update() is early enough, since contacts
 /// are only found where parts overlap when a step begins.  On a common ground nothing is far, and for some hundred
 /// steps it is not tried again.

@@ -29,7 +29,7 @@ struct Group {
 /// - the numbers that are free.  The lowest is used next, so that the same history of additions and removals gives the
 ///   same numbers; a snapshot prescribes those of what it adds.
 ///
-/// It does not know what a body does in a step: Shards, FarGroups and others look at the groups, and are told by
+/// It does not know what a body does in a step: Shards, FarGroups and others look at the groups, and are notified by
 /// PhysicsWorld when one changes.  Orders of a step that are to be the same in each run are those of the numbers here:
 /// groups ascending, and in a group its bodies in the order of their creation.
 ///

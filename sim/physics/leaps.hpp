@@ -13,7 +13,7 @@ namespace sim {
 /// Finds bodies that move further than their size in a step: contacts are only found where parts overlap at its end, so
 /// that such a body may pass through a wall.  This class owns
 /// - the bodies that a step found to be fast, and
-/// - the leaps that nobody has taken yet.
+/// - the leaps that were not taken yet.
 ///
 /// Each free body with parts has a speed from which on it is looked at.  At first that is the speed at which it moves
 /// by the shortest side of its box in a step; when it was looked at and is longer along its motion, a speed a little
@@ -21,7 +21,7 @@ namespace sim {
 ///
 /// Order within a step: threads call note_fast() after they moved bodies, find() comes at the end, when all are where
 /// they will be.  Groups that are far from everything are left out.  The list is sorted, so that threads do not matter.
-/// Nothing here is hashed or saved; a world that was restored looks at each body anew.
+/// Nothing here is hashed or saved; a world that was restored looks at each body again.
 class Leaps {
  public:
   Leaps(double step_s, const Groups& groups, const FarGroups& far_groups)

@@ -16,7 +16,7 @@ namespace sim {
 /// its speed, for Leaps; and the limits of speed and distance, beyond which the simulation has diverged.  This class
 /// owns the limits.
 ///
-/// Each thread collects what it saw in a Batch of its own, and hands it over when it is done with its bodies.  A body
+/// Each thread collects what it saw in its own Batch, and hands it over when it is done with its bodies.  A body
 /// beyond a limit does not end the step of the others: when all have moved, throw_first_fault() names the first such
 /// body in the order of the groups, so that the message does not depend on the threads.
 class MovedBodies {

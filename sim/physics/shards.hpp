@@ -33,7 +33,7 @@ namespace sim {
 /// A solver of a step that failed is kept, but not used again: ODE may have left it in any state.
 class Shards {
  public:
-  /// Of these, only `moved` is told what a step did.
+  /// Of these, only `moved` is notified of what a step did.
   Shards(const StepSettings& settings, Groups& groups, Collider& collider, Islands& islands, const MovedBodies& moved)
       : settings_(settings), groups_(groups), collider_(collider), islands_(islands), moved_(moved) {}
 

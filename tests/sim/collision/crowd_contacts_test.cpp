@@ -12,7 +12,7 @@ using sim::Vector3d;
 
 constexpr double step_s = 0.01;
 
-/// Bodies on the x axis, each a vehicle of its own, and contacts between them.
+/// Bodies on the x axis, each its own vehicle, and contacts between them.
 class Crowd {
  public:
   Crowd() : world_((sim::start_ode(), dWorldCreate())), contacts_({step_s, 0.2, 0, 0, 1}) {}
@@ -70,7 +70,7 @@ TEST(CrowdContacts, GiveUnequalVehiclesTheirCommonVelocity) {
   sim::Collider::Between between;
   crowd.touch(between, right, left);
   crowd.solve();
-  // Both go on at 1 m/s: the momentum is 4 N s, the mass 4 kg.
+  // Both continue at 1 m/s: the momentum is 4 N s, the mass 4 kg.
   EXPECT_NEAR(dBodyGetForce(right)[0] * step_s / 3, 1, 1e-12);
   EXPECT_NEAR(4 + dBodyGetForce(left)[0] * step_s / 1, 1, 1e-12);
 }
