@@ -9,8 +9,8 @@
 #include <type_traits>
 
 #include "sim/ode/ode_math.hpp"
+#include "sim/ode/physics_fault.hpp"
 #include "sim/physics/free_step.hpp"
-#include "sim/physics/physics_world.hpp"
 #include "sim/rays/ode_scene.hpp"
 #include "sim/state/state_archive.hpp"
 

@@ -6,11 +6,12 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/base/math.hpp"
 #include "sim/base/step_memory.hpp"
-#include "sim/physics/motion.hpp"
+#include "sim/collision/motion.hpp"
 
 struct dxBody;  // of ODE; only the sources of physics include its headers
 struct dxGeom;
@@ -32,9 +33,14 @@ struct BodyMotion {
 };
 
 /// Rigid body: an ODE body, free or kinematic, or a fixed body without one.  ODE's frame has its origin at the center
-/// of mass; this class uses the body frame B that the vehicle file defines.
+/// of mass; this class uses the body frame B that the vehicle file defines.  What a step does with it is in
+/// SteppedBody.
 class Body : public VisitedInSteps {
  public:
+  virtual ~Body() = default;
+  Body(const Body&) = delete;
+  Body& operator=(const Body&) = delete;
+
   const std::string& name() const { return name_; }  ///< such as `rover1/chassis`
   int number() const { return number_; }
   int group() const { return group_; }
@@ -110,24 +116,16 @@ class Body : public VisitedInSteps {
   /// Saves, hashes or restores the state of the body.
   void visit_state(StateArchive& archive);
 
- private:
-  friend class PhysicsWorld;
+ protected:
   struct FixedGeom {
     dxGeom* geom;
     Pose X_BG;
     bool plane;
   };
-  Body() = default;
+  /// Without ODE's body yet; see SteppedBody.
+  Body(std::string name, int number, int group, Motion motion, SceneMoves& moves)
+      : motion_(motion), number_(number), group_(group), name_(std::move(name)), moves_(&moves) {}
   bool free() const { return motion_ == Motion::free; }
-  bool left_its_box() const {
-    // NaN has left.
-    return !(std::abs(p_WC_[0] - box_center_W_[0]) <= leeway_m_ && std::abs(p_WC_[1] - box_center_W_[1]) <= leeway_m_ &&
-             std::abs(p_WC_[2] - box_center_W_[2]) <= leeway_m_);
-  }
-  /// Whether it is so fast that PhysicsWorld looks whether it moves further than its size in a step.
-  bool may_leap() const {
-    return v_WC_W_[0] * v_WC_W_[0] + v_WC_W_[1] * v_WC_W_[1] + v_WC_W_[2] * v_WC_W_[2] > leap_m2ps2_;
-  }
   void place_fixed_geoms();
   void place_ode_body(const Pose& X_WB);
   void write_rotation(const Quaterniond& q_WB);

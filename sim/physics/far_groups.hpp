@@ -1,66 +1,69 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <span>
+#include <cstdint>
+#include <mutex>
+#include <optional>
 #include <vector>
 
-#include "sim/geometry/box_grid.hpp"
+#include "sim/collision/collider.hpp"
+#include "sim/collision/group_boxes.hpp"
+#include "sim/physics/groups.hpp"
 
 namespace sim {
 
-/// Finds the groups that are far from everything: their boxes meet no box of another group and no fixed part.
-/// Boxes are inflated, so that nothing can touch such a group until it leaves its box.
+/// Takes groups that are far from everything out of the collision space, and brings them back before they can touch
+/// anything.  This class owns
+/// - a box for each group, wide enough for `horizon_s_` at its speed; GroupBoxes tells which boxes meet nothing,
+/// - the list of groups that left their boxes or are new: bodies have the leeway in their boxes, so that a thread that
+///   moves a body sees at once whether it left,
+/// - what it saw of fixed parts and of bodies that were placed elsewhere, when it looked last.
+///
+/// Order within a step: update() comes first, before Collider searches for pairs.  It makes all boxes again about once
+/// a second, or when fixed parts changed, and in other steps only those of the groups in the list.  Later in the step
+/// threads call note_left() with the bodies that left their boxes.  The next update() is early enough, since contacts
+/// are only found where parts overlap when a step begins.  On a common ground nothing is far, and for some hundred
+/// steps it is not tried again.
+///
+/// Which groups are far is not state: it is neither hashed nor saved, and no bit of a motion depends on it, for what is
+/// far has no pairs in the collision space either.
 class FarGroups {
  public:
-  /// Removes all boxes; then the groups have the numbers below `groups`.
-  void clear(std::size_t groups);
-  /// Sets the box of a group; it has no effect before find().
-  void set(int group, const AlignedBox& box);
-  /// Finds which groups with a box are far.  `fixed`: boxes of fixed parts, which may be infinite.
-  void find(std::span<const AlignedBox> fixed);
-  /// Sets the box of a group after find(), and calls near(number) for it and for the groups that it meets, if it is not
-  /// far from everything; they stay near until the next find().
-  template <typename Near>
-  void move(int group, const AlignedBox& box, const Near& near) {
-    const int place = place_of(group);
-    boxes_[static_cast<std::size_t>(place)] = box;
-    bool meets = meets_fixed(box);
-    for (int other = 0; other < static_cast<int>(boxes_.size()); ++other) {
-      if (other == place || !boxes_[static_cast<std::size_t>(other)].meets(box)) continue;
-      meets = true;
-      become_near(other, near);
-    }
-    if (meets) become_near(place, near);
-  }
-  /// Removes the box of a group.
-  void remove(int group);
-  /// Whether a group is far; false without a box.
-  bool far(int group) const {
-    const auto number = static_cast<std::size_t>(group);
-    return number < places_.size() && places_[number] >= 0 && far_[static_cast<std::size_t>(places_[number])];
-  }
-  std::size_t boxes() const { return boxes_.size(); }
-  /// Number of groups that are far.
-  std::size_t count() const { return count_; }
+  /// `moves`: of the world.
+  FarGroups(Groups& groups, Collider& collider, const SceneMoves& moves)
+      : groups_(groups), collider_(collider), moves_(moves) {}
+
+  /// Brings groups that may touch something in this step into the collision space.
+  void update();
+  /// Notes that a group was added, or is about to be removed.
+  void note(int group);
+  /// Forgets the box of a group that is about to be removed.
+  void remove(int group) { boxes_.remove(group); }
+  /// Notes the groups of bodies that left their boxes.  Thread-safe.
+  void note_left(const std::vector<int>& groups);
+
+  /// Whether a group is out of the collision space.
+  bool far(int group) const { return boxes_.far(group); }
+  /// Number of times that groups came near, or all boxes were made: until it changes, far() tells the same.
+  std::uint64_t changes() const { return changes_; }
 
  private:
-  int place_of(int group);
-  bool meets_fixed(const AlignedBox& box) const;
-  template <typename Near>
-  void become_near(int place, const Near& near) {
-    if (!far_[static_cast<std::size_t>(place)]) return;
-    far_[static_cast<std::size_t>(place)] = false;
-    --count_;
-    near(groups_[static_cast<std::size_t>(place)]);
-  }
+  std::optional<AlignedBox> make_box(const Group& group) const;
+  void make_boxes();
+  void find_all();
+  void move(int group);
 
-  std::vector<int> places_;  // by group: its place in the lists below; -1: none
-  std::vector<int> groups_;
-  std::vector<AlignedBox> boxes_;
-  std::vector<char> far_;
-  std::vector<AlignedBox> endless_;  // of fixed parts
-  BoxGrid fixed_, moving_;
-  std::size_t count_ = 0;
+  Groups& groups_;
+  Collider& collider_;
+  const SceneMoves& moves_;
+  GroupBoxes boxes_;
+  std::vector<int> left_;  // new groups, and those of bodies that left their boxes; several times the same
+  std::mutex left_mutex_;
+  bool fixed_parts_changed_ = true;            ///< some were added or removed
+  std::uint64_t fixed_moves_ = 0, jumps_ = 0;  // of moves_, at the last update
+  double horizon_s_ = 1;                       ///< for which a box suffices at constant speed
+  int steps_without_ = 0;                      ///< until it is tried again
+  std::uint64_t changes_ = 0;
 };
 
 }  // namespace sim

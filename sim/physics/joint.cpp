@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "sim/ode/ode_math.hpp"
+#include "sim/ode/physics_fault.hpp"
 #include "sim/physics/joint_load.hpp"
-#include "sim/physics/physics_world.hpp"
 #include "sim/state/state_archive.hpp"
 
 namespace sim {

@@ -31,9 +31,11 @@ using JointHandle = std::unique_ptr<dxJoint, JointDeleter>;
 /// Sign convention: positions and velocities are those of the second body relative to the first, right-handed about (or
 /// along) the axis: a wheel that is the second body, with axis +y, rolls forward at positive speed.  For a joint to the
 /// world or to a fixed body they are those of the moving body.
+///
+/// What a step does with it is in SteppedJoint.
 class Joint {
  public:
-  ~Joint();
+  virtual ~Joint();
   Joint(const Joint&) = delete;
   Joint& operator=(const Joint&) = delete;
 
@@ -76,10 +78,7 @@ class Joint {
   /// the saved one.
   void visit_state(StateArchive& archive);
 
- private:
-  friend class PhysicsWorld;
-  static constexpr int max_axes = 3;
-  struct Load;  // sim/physics/joint_load.hpp
+ protected:
   /// Pose of an ODE body, to the last bit.
   struct OdePose {
     double p[3], q[4], R[12];
@@ -92,6 +91,30 @@ class Joint {
     Pose X_WC;              // to the world: of the moving body
     OdePose first, second;  // of ODE's bodies; without a second one its pose is not used
   };
+  /// Attaches the bodies at their present poses.  `second` null: the world.
+  Joint(dxWorld* world, std::string name, const JointConfig& config, dxBody* first, dxBody* second, const Pose& X_WV);
+  dxJoint* ode() const { return ode_.get(); }
+  const Origin& origin() const { return *origin_; }
+  /// Constraint rows with all motors and stops active; motors that leave a stop, and damping, add some.
+  int max_rows() const;
+  /// Creates the ODE joint again, as it was created and with its present settings.  The bodies keep their poses.
+  void create_again(dxWorld* world, dxBody* first, dxBody* second);
+  void move_world_side(const Pose& X_move_W);
+  void make_again(const Pose& X_WV, const Pose& X_WC);
+  /// Gives the damping of the axes to a joint of `group` for the next step.
+  void start_damping(dxJointGroup* group);
+  /// Gives the stops from which motors drive away to a joint of `group` for the next step.  Returns whether there are
+  /// any; then end_leaving_stops() must follow the step.
+  bool start_leaving_stops(dxJointGroup* group, double step_s);
+  void end_leaving_stops();
+  bool is_measured() const { return load_ != nullptr; }
+  void note_before_step();
+  void note_load();
+  void update_position(double step_s);  ///< after each step; sums differences because ODE wraps at pi
+
+ private:
+  static constexpr int max_axes = 3;
+  struct Load;  // sim/physics/joint_load.hpp
   /// Stops in ODE's sign and units, of the position that is not wrapped.
   struct OdeStops {
     double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
@@ -99,12 +122,8 @@ class Joint {
       return low > -std::numeric_limits<double>::infinity() || high < std::numeric_limits<double>::infinity();
     }
   };
-  /// Attaches the bodies at their present poses.  `second` null: the world.
-  Joint(dxWorld* world, std::string name, const JointConfig& config, dxBody* first, dxBody* second, const Pose& X_WV);
   void create(dxWorld* world, dxBody* first, dxBody* second);
   void create_ball_motor(dxWorld* world, dxBody* first, dxBody* second);
-  /// Creates the ODE joint again, as it was created and with its present settings.  The bodies keep their poses.
-  void create_again(dxWorld* world, dxBody* first, dxBody* second);
   Vector3d rotation_of_ball() const;
   void configure_axis(const JointAxisConfig& config, int axis);
   void place_stops(std::optional<double> low, std::optional<double> high, int axis);
@@ -116,33 +135,19 @@ class Joint {
   void visit_load(StateArchive& archive);
   void measure_no_load();
   void set_parameter(int parameter, double value, int axis);
-  /// Constraint rows with all motors and stops active; motors that leave a stop, and damping, add some.
-  int max_rows() const;
   double wrapped_position(int axis) const;
   double get_parameter(int parameter, int axis) const;
   Vector3d axis_W(int axis) const;
   void request_load();
-  void note_before_step();
-  void note_load();
   void note_load_without_damping();
   double motor_at_stop(int axis) const;
   /// Returns whether the motor of an axis drives it away from a stop at which it is.
   bool leaves_stop(int axis) const;
   /// How far an axis is beyond the stop that it leaves.
   double depth_in_stop(int axis) const;
-  /// Gives the stops from which motors drive away to a joint of `group` for the next step.  Returns whether there are
-  /// any; then end_leaving_stops() must follow the step.
-  bool start_leaving_stops(dxJointGroup* group, double step_s);
-  void end_leaving_stops();
-  /// Gives the damping of the axes to a joint of `group` for the next step.
-  void start_damping(dxJointGroup* group);
   dxJoint* create_slider_damper(dxJointGroup* group) const;
   Vector3d middle_of_bodies_W() const;
   dxJoint* create_slider_stop(dxJointGroup* group) const;
-  void move_world_side(const Pose& X_move_W);
-  void make_again(const Pose& X_WV, const Pose& X_WC);
-  bool is_measured() const { return load_ != nullptr; }
-  void update_position(double step_s);  ///< after each step; sums differences because ODE wraps at pi
 
   std::string name_;
   JointType type_;

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "sim/ode/ode_math.hpp"
-#include "sim/physics/physics_world.hpp"
+#include "sim/ode/physics_fault.hpp"
 #include "sim/state/state_archive.hpp"
 
 // Efforts on a joint, and its load.

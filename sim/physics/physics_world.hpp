@@ -11,74 +11,18 @@
 #include <vector>
 
 #include "sim/base/math.hpp"
+#include "sim/collision/contact_report.hpp"
+#include "sim/collision/motion.hpp"
 #include "sim/model/physics_config.hpp"
 #include "sim/ode/physics_fault.hpp"
 #include "sim/physics/body.hpp"
-#include "sim/physics/contact_report.hpp"
 #include "sim/physics/joint.hpp"
-#include "sim/physics/motion.hpp"
+#include "sim/physics/physics_types.hpp"
 #include "sim/scene/scene.hpp"
 
 namespace sim {
 
 class StateArchive;
-
-/// Part of a body as created.
-struct PartInfo {
-  std::string name;
-  int group = -1;    ///< -1: the part was removed, and the other members are invalid
-  int body = -1;     ///< number in PhysicsWorld::bodies()
-  int material = 0;  ///< see PhysicsWorld::material
-  std::uint32_t category = 1;
-  Pose X_BP = Pose::Identity();  ///< of the part in its body
-  std::optional<Color> color;    ///< own color; else that of the material
-  bool plane = false;            ///< infinite
-};
-
-/// Numbers of a group and of its bodies, parts and joints, in order of creation.
-struct GroupNumbers {
-  int group = -1;
-  std::vector<int> bodies, parts, joints;
-  template <typename Archive>
-  void visit_state(Archive& archive) {
-    archive(group, bodies, parts, joints);
-  }
-};
-
-/// Poses at the creation of a joint to the world: the zero of its position in ODE.
-struct JointPlace {
-  Pose X_WV = Pose::Identity();
-  Pose X_WC = Pose::Identity();  ///< of the moving body
-  template <typename Archive>
-  void visit_state(Archive& archive) {
-    archive(X_WV, X_WC);
-  }
-};
-
-/// Amount of work in the last step; deterministic.
-struct StepCounts {
-  int contacts = 0;
-  int max_island_rows = 0;
-  bool quick = false;  ///< some island was stepped as a crowd or by QuickStep
-  template <typename Archive>
-  void visit_state(Archive& archive) {
-    archive(contacts, max_island_rows, quick);
-  }
-};
-
-/// Island: bodies that the solver treats together.
-struct IslandInfo {
-  int rows = 0;                     ///< constraint rows
-  std::vector<std::string> bodies;  ///< by number; at most the first 1000
-  std::size_t body_count = 0;
-};
-
-/// Body that moved further than its own size in a step.
-struct Leap {
-  int body = -1;  ///< number
-  double moved_m = 0;
-  double size_m = 0;  ///< of its parts, along its motion
-};
 
 /// Rigid bodies, joints and contacts, stepped by ODE.  It has no notion of vehicles or devices: each vehicle or object
 /// is a group, whose parts share one collision space.

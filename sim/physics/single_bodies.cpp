@@ -1,101 +1,66 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The step of groups that are one body without joints, as most marine vehicles are: while such a body touches nothing
-// it does not go through ODE.
-#include <algorithm>
-#include <atomic>
+#include "sim/physics/single_bodies.hpp"
 
-#include "sim/physics/physics_world_impl.hpp"
+#include <atomic>
 
 namespace sim {
 
-/// Sorts the shards into those that are one body without joints, and others.
-void PhysicsWorld::Impl::list_shards() {
-  if (parts_behind)  // also those of bodies that are no longer single
-    for_each_moving([](const Body& body) { mark_as_moved(body); });
-  parts_behind = false;
-  singles.clear();
-  other_shards.clear();
-  for (int number = 0; number < static_cast<int>(shards.size()); ++number) {
-    Shard* const shard = shards[number].get();
-    if (shard == nullptr || shard->groups.empty()) continue;
-    if (shard->stale) list_content(*shard);
-    if (shard->moving.size() == 1 && shard->joints.empty())
-      singles.push_back({shard->moving.front(), number});
-    else
-      other_shards.push_back(number);
-  }
-  steps_by_ode.assign(shards.size(), false);
-  near_singles_known = false;
-  shards_listed = true;
+void SingleBodies::list() {
+  if (parts_behind_)  // also those of bodies that are no longer single
+    groups_.for_each_moving([](const SteppedBody& body) { body.mark_parts_as_moved(); });
+  parts_behind_ = false;
+  shards_.list();
+  singles_.clear();
+  for (const int number : shards_.singles()) singles_.push_back({shards_[number].moving.front(), number});
+  near_known_ = false;
 }
 
-/// Steps the single bodies without pairs, and marks the shards of the others in steps_by_ode.  Returns whether a body
-/// is out of bounds.
-bool PhysicsWorld::Impl::step_singles() {
+bool SingleBodies::step(ThreadPool* threads) {
   std::atomic<bool> out = false;
-  for_each_block(threads.get(), singles.size(), [&](std::size_t begin, std::size_t end) {
-    bool some_out = false;
-    std::vector<int> left, fast;
+  for_each_block(threads, singles_.size(), [&](std::size_t begin, std::size_t end) {
+    MovedBodies::Batch batch;
     for (std::size_t i = begin; i < end; ++i) {
-      Body& body = *singles[i].body;
-      if (steps_by_ode[singles[i].shard]) continue;
-      if (body.first_order_ || body.first_order_now_) {
-        step_by_ode_without_pairs(singles[i].shard);
+      SteppedBody& body = *singles_[i].body;
+      if (shards_.steps_by_ode(singles_[i].shard)) continue;
+      if (body.takes_first_order_step()) {
+        shards_.step_by_ode(singles_[i].shard);
         continue;
       }
-      if (body.kinematic()) {
-        body.start_kinematic_step();
-        body.end_kinematic_step_alone();
-      } else {
-        body.step_alone(config.step_s, gravity_mps2);
-      }
-      collider.note_position(body.number_);
-      some_out |= out_of_bounds(body);
-      if (body.left_its_box()) left.push_back(body.group_);
-      if (body.may_leap()) fast.push_back(body.number_);
+      step_alone(body);
+      moved_.look_at(body, batch);
     }
-    if (some_out) out = true;
-    note_left_boxes(left);
-    note_may_leap(fast);
+    if (batch.out_of_bounds) out = true;
+    moved_.hand_over(batch);
   });
-  parts_behind = true;
+  parts_behind_ = true;
   return out;
 }
 
-/// Lets ODE step a shard; its pairs were dealt if it is to do so already.
-void PhysicsWorld::Impl::step_by_ode_without_pairs(int shard) {
-  if (!steps_by_ode[shard]) shards[shard]->pairs.clear();
-  steps_by_ode[shard] = true;
-}
-
-/// Marks the parts of the single bodies in the collision space as moved.
-void PhysicsWorld::Impl::mark_near_singles() {
-  if (!near_singles_known) {
-    near_singles.clear();
-    for (const Single& single : singles)
-      if (!far_groups.far(single.body->group_) && dBodyGetFirstGeom(single.body->ode_.get()) != nullptr)
-        near_singles.push_back(single.body);
-    near_singles_known = true;
+void SingleBodies::step_alone(SteppedBody& body) const {
+  if (body.kinematic()) {
+    body.start_kinematic_step();
+    body.end_kinematic_step_alone();
+  } else {
+    body.step_alone(settings_.config.step_s, settings_.gravity_mps2);
   }
-  for (const Body* body : near_singles) mark_as_moved(*body);
 }
 
-/// Lets the parts of all single bodies follow them, before anything outside of the step looks at parts.
-void PhysicsWorld::Impl::bring_parts() {
-  if (!parts_behind) return;
-  if (!shards_listed) return list_shards();
-  parts_behind = false;
-  for (const Single& single : singles) mark_as_moved(*single.body);
+void SingleBodies::mark_near() {
+  if (!near_known_ || near_changes_ != far_groups_.changes()) {
+    near_.clear();
+    for (const Single& single : singles_)
+      if (!far_groups_.far(single.body->group()) && single.body->has_parts()) near_.push_back(single.body);
+    near_known_ = true;
+    near_changes_ = far_groups_.changes();
+  }
+  for (const SteppedBody* body : near_) body->mark_parts_as_moved();
 }
 
-void PhysicsWorld::Impl::mark_as_moved(const Body& body) {
-  dBodySetPosition(body.ode_.get(), body.p_WC_[0], body.p_WC_[1], body.p_WC_[2]);
-}
-
-void PhysicsWorld::Impl::note_left_boxes(const std::vector<int>& left) {
-  if (left.empty()) return;
-  const std::lock_guard lock(left_mutex);
-  left_boxes.insert(left_boxes.end(), left.begin(), left.end());
+void SingleBodies::bring_parts() {
+  if (!parts_behind_) return;
+  if (!shards_.listed()) return list();
+  parts_behind_ = false;
+  for (const Single& single : singles_) single.body->mark_parts_as_moved();
 }
 
 }  // namespace sim

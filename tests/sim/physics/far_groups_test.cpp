@@ -6,63 +6,17 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
+#include <cstdint>
 #include <memory>
-#include <set>
-#include <vector>
+#include <string>
 
 #include "tests/sim/physics/small_worlds.hpp"
+#include "tests/sim/physics/step_objects.hpp"
 #include "tests/state_hash_of.hpp"
 
 namespace {
 
 using namespace small_worlds;
-
-sim::AlignedBox cube(double x, double half = 1) {
-  return {{x - half, -half, -half}, {x + half, half, half}};
-}
-
-TEST(FarGroups, AreThoseWhoseBoxesMeetNoOthers) {
-  sim::FarGroups groups;
-  groups.clear(5);
-  groups.set(0, cube(0));
-  groups.set(1, cube(1.5));
-  groups.set(2, cube(10));
-  groups.set(4, cube(20));
-  groups.find(std::vector{cube(20.5, 0.1)});
-  EXPECT_FALSE(groups.far(0));
-  EXPECT_FALSE(groups.far(1));
-  EXPECT_TRUE(groups.far(2));
-  EXPECT_FALSE(groups.far(3)) << "without a box";
-  EXPECT_FALSE(groups.far(4)) << "at a fixed part";
-  EXPECT_EQ(groups.count(), 1u);
-}
-
-TEST(FarGroups, AreNearToAnEndlessGround) {
-  sim::FarGroups groups;
-  groups.clear(2);
-  groups.set(0, cube(0));
-  groups.set(1, {{0, 0, 5}, {1, 1, 6}});
-  constexpr double endless = std::numeric_limits<double>::infinity();
-  groups.find(std::vector<sim::AlignedBox>{{{-endless, -endless, -endless}, {endless, endless, 0}}});
-  EXPECT_FALSE(groups.far(0));
-  EXPECT_TRUE(groups.far(1));
-}
-
-TEST(FarGroups, ComeNearWhenABoxMovesIntoTheirs) {
-  sim::FarGroups groups;
-  groups.clear(3);
-  for (const int group : {0, 1, 2}) groups.set(group, cube(10 * group));
-  groups.find({});
-  EXPECT_EQ(groups.count(), 3u);
-  std::set<int> near;
-  groups.move(0, cube(9), [&](int group) { near.insert(group); });
-  EXPECT_EQ(near, (std::set<int>{0, 1}));
-  EXPECT_TRUE(groups.far(2));
-  groups.remove(1);
-  groups.move(3, cube(11), [&](int group) { near.insert(group); });
-  EXPECT_EQ(near, (std::set<int>{0, 1, 3})) << "a new group meets the one at 9, not the removed one";
-}
 
 PhysicsConfig far_from_planets() {
   return with_step(0.01, 0);
@@ -81,6 +35,63 @@ int first_contact(PhysicsWorld& world, int steps) {
     if (world.last_step().contacts > 0) return i;
   }
   return -1;
+}
+
+TEST(FarGroups, AreOutOfTheCollisionSpaceWhileTheirBoxesMeetNothing) {
+  StepObjects objects(far_from_planets());
+  objects.add_ball("a", 0);
+  sim::SteppedBody& b = objects.add_ball("b", 100);
+  objects.far_groups.update();
+  EXPECT_TRUE(objects.far_groups.far(0));
+  EXPECT_TRUE(objects.far_groups.far(1));
+  b.set_pose(translation(0.9, 0, 0));
+  EXPECT_TRUE(objects.collider.find_pairs().empty()) << "they touch, but the space has neither";
+  objects.far_groups.update();
+  EXPECT_FALSE(objects.far_groups.far(0));
+  EXPECT_FALSE(objects.far_groups.far(1));
+  EXPECT_EQ(objects.collider.find_pairs().size(), 1u);
+}
+
+TEST(FarGroups, TellThatSomethingChangedWhenGroupsComeNear) {
+  StepObjects objects(far_from_planets());
+  objects.add_ball("a", 0);
+  sim::SteppedBody& b = objects.add_ball("b", 100);
+  objects.far_groups.update();
+  const std::uint64_t before = objects.far_groups.changes();
+  b.set_pose(translation(50, 0, 0));
+  objects.far_groups.update();
+  EXPECT_EQ(objects.far_groups.changes(), before) << "it has a new box, and is as far as before";
+  b.set_pose(translation(0.9, 0, 0));
+  objects.far_groups.update();
+  EXPECT_GT(objects.far_groups.changes(), before);
+}
+
+TEST(FarGroups, HaveBoxesWithLeeway) {
+  // Balls of 0.5 m that stand have 0.1 m of leeway, and their farthest point is taken for a corner of the box around
+  // them: boxes of 0.1 m + 0.5 sqrt(3) m = 0.966 m to each side.
+  for (const double gap_m : {1.92, 1.94}) {
+    StepObjects objects(far_from_planets());
+    objects.add_ball("a", 0);
+    objects.add_ball("b", gap_m);
+    objects.add_ball("elsewhere", 100);
+    objects.far_groups.update();
+    EXPECT_EQ(objects.far_groups.far(0), gap_m > 1.93) << gap_m;
+  }
+}
+
+TEST(FarGroups, AreNotTriedForSomeTimeOnACommonGround) {
+  StepObjects objects(far_from_planets());
+  objects.add(body("ground", {plane()}), translation(0, 0, -0.5), Motion::fixed);
+  sim::SteppedBody& ball = objects.add_ball("ball", 0);
+  objects.far_groups.update();
+  EXPECT_FALSE(objects.far_groups.far(ball.group()));
+  ball.set_pose(translation(0, 0, 1000));
+  for (int i = 0; i < 500; ++i) objects.far_groups.update();
+  EXPECT_FALSE(objects.far_groups.far(ball.group()));
+  ball.set_pose(translation(0, 0, 1001));
+  objects.groups.for_each_moving([&](const sim::SteppedBody& body) { objects.far_groups.note(body.group()); });
+  objects.far_groups.update();
+  EXPECT_TRUE(objects.far_groups.far(ball.group()));
 }
 
 TEST(FarGroups, TouchInTheFirstStepThatBeginsWithOverlap) {

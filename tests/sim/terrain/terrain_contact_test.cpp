@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/collision/terrain_geom.hpp"
 #include "sim/ode/ode_math.hpp"
-#include "sim/physics/terrain_geom.hpp"
 #include "tests/sim/terrain/terrain_worlds.hpp"
 
 namespace {

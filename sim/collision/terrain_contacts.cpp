@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "sim/collision/terrain_geom.hpp"
 #include "sim/ode/ode_math.hpp"
-#include "sim/physics/terrain_geom.hpp"
 
 namespace sim {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/physics/collider.hpp"
+#include "sim/collision/collider.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "sim/base/free_numbers.hpp"
+#include "sim/collision/terrain_geom.hpp"
 #include "sim/ode/find_contacts.hpp"
 #include "sim/ode/ode_math.hpp"
 #include "sim/ode/wheel_contacts.hpp"
-#include "sim/physics/terrain_geom.hpp"
 
 namespace sim {
 namespace {

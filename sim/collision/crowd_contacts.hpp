@@ -8,11 +8,9 @@
 #include <vector>
 
 #include "sim/base/math.hpp"
-#include "sim/physics/collider.hpp"
+#include "sim/collision/collider.hpp"
 
 namespace sim {
-
-class Body;
 
 /// Forces at the contacts between the vehicles of a crowd, by sequential impulses (Catto 2005, Iterative dynamics with
 /// temporal coherence, Game Developers Conference): each vehicle counts as one rigid body, with its present motion and
@@ -33,20 +31,24 @@ class CrowdContacts {
 
   void clear();
   /// Adds a body of a vehicle.  `vehicle`: the same number for all bodies that joints connect.
-  void add_body(const Body& body, int vehicle, dBodyID ode);
+  void add_body(dBodyID ode, double mass_kg, const Matrix3d& inertia_C_B, int vehicle);
   /// Adds a contact between bodies that were added, or one that was added and a kinematic one.
   void add_contact(const Collider::Between& contact);
   /// Adds the forces to the bodies, and writes them to the feedback of the joints that have one.
   void solve();
 
  private:
+  struct Member {
+    dBodyID ode;
+    double mass_kg;
+    Matrix3d inertia_C_B;
+  };
   struct Vehicle {
     double mass_kg = 0, inverse_mass = 0;
     Vector3d p_WC = Vector3d::Zero();  // center of mass
     Matrix3d inverse_inertia_W = Matrix3d::Zero();
     Vector3d dv_W = Vector3d::Zero(), dw_W = Vector3d::Zero();  // by the impulses
-    std::vector<const Body*> bodies;
-    std::vector<dBodyID> ode;
+    std::vector<Member> bodies;
   };
   /// A direction in which a contact pushes: along the normal or a tangent.
   struct Row {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/physics/terrain_geom.hpp"
+#include "sim/collision/terrain_geom.hpp"
 
 #include <algorithm>
 #include <cmath>

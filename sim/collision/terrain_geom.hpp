@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "sim/collision/contact_table.hpp"
 #include "sim/model/physics_config.hpp"
 #include "sim/ode/ode_library.hpp"
 #include "sim/ode/part_shape.hpp"
-#include "sim/physics/contact_table.hpp"
 #include "sim/terrain/terrain.hpp"
 
 namespace sim {

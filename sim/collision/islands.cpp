@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/physics/islands.hpp"
+#include "sim/collision/islands.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -9,13 +9,13 @@
 #include <utility>
 #include <vector>
 
+#include "sim/collision/body_places.hpp"
+#include "sim/collision/contact_report.hpp"
+#include "sim/collision/contact_table.hpp"
+#include "sim/collision/islands.hpp"
+#include "sim/collision/motion.hpp"
 #include "sim/geometry/box_grid.hpp"
 #include "sim/ode/ode_library.hpp"
-#include "sim/physics/body_places.hpp"
-#include "sim/physics/contact_report.hpp"
-#include "sim/physics/contact_table.hpp"
-#include "sim/physics/islands.hpp"
-#include "sim/physics/motion.hpp"
 #include "sim/rays/world_scene.hpp"
 
 namespace sim {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/physics/contact_table.hpp"
+#include "sim/collision/contact_table.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
+#include "sim/collision/collider.hpp"
 #include "sim/ode/find_contacts.hpp"
 #include "sim/ode/ode_math.hpp"
-#include "sim/physics/collider.hpp"
 
 namespace sim {
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/physics/crowd_contacts.hpp"
+#include "sim/collision/crowd_contacts.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "sim/ode/ode_math.hpp"
-#include "sim/physics/body.hpp"
 
 namespace sim {
 
@@ -34,14 +33,13 @@ void CrowdContacts::clear() {
   contacts_.clear();
 }
 
-void CrowdContacts::add_body(const Body& body, int vehicle, dBodyID ode) {
+void CrowdContacts::add_body(dBodyID ode, double mass_kg, const Matrix3d& inertia_C_B, int vehicle) {
   const auto [at, is_new] = numbers_.try_emplace(vehicle, static_cast<int>(vehicles_.size()));
   if (is_new) vehicles_.emplace_back();
   Vehicle& whole = vehicles_[static_cast<std::size_t>(at->second)];
-  whole.mass_kg += body.mass_kg();
-  whole.p_WC += body.mass_kg() * to_eigen(dBodyGetPosition(ode));
-  whole.bodies.push_back(&body);
-  whole.ode.push_back(ode);
+  whole.mass_kg += mass_kg;
+  whole.p_WC += mass_kg * to_eigen(dBodyGetPosition(ode));
+  whole.bodies.push_back({ode, mass_kg, inertia_C_B});
   of_body_[ode] = at->second;
 }
 
@@ -63,15 +61,14 @@ void CrowdContacts::find_motion(Vehicle& vehicle) const {
   vehicle.inverse_mass = 1 / vehicle.mass_kg;
   Matrix3d inertia_W = Matrix3d::Zero();
   Vector3d force_W = Vector3d::Zero(), torque_W = Vector3d::Zero();
-  for (std::size_t i = 0; i < vehicle.bodies.size(); ++i) {
-    const Matrix3d R_WB = rotation_to_eigen(dBodyGetRotation(vehicle.ode[i]));
-    const Vector3d arm_W = to_eigen(dBodyGetPosition(vehicle.ode[i])) - vehicle.p_WC;
-    const double mass_kg = vehicle.bodies[i]->mass_kg();
-    inertia_W += R_WB * vehicle.bodies[i]->inertia_C_B() * R_WB.transpose() +
-                 mass_kg * (arm_W.squaredNorm() * Matrix3d::Identity() - arm_W * arm_W.transpose());
-    const Vector3d force_i_W = to_eigen(dBodyGetForce(vehicle.ode[i]));
+  for (const Member& body : vehicle.bodies) {
+    const Matrix3d R_WB = rotation_to_eigen(dBodyGetRotation(body.ode));
+    const Vector3d arm_W = to_eigen(dBodyGetPosition(body.ode)) - vehicle.p_WC;
+    inertia_W += R_WB * body.inertia_C_B * R_WB.transpose() +
+                 body.mass_kg * (arm_W.squaredNorm() * Matrix3d::Identity() - arm_W * arm_W.transpose());
+    const Vector3d force_i_W = to_eigen(dBodyGetForce(body.ode));
     force_W += force_i_W;
-    torque_W += to_eigen(dBodyGetTorque(vehicle.ode[i])) + arm_W.cross(force_i_W);
+    torque_W += to_eigen(dBodyGetTorque(body.ode)) + arm_W.cross(force_i_W);
   }
   vehicle.inverse_inertia_W = inertia_W.inverse();
   vehicle.dv_W = settings_.step_s * vehicle.inverse_mass * force_W;
