@@ -16,6 +16,11 @@ install(FILES bridges/client/shoal/client.hpp DESTINATION include/shoal/shoal CO
 
 install(DIRECTORY sim DESTINATION include/shoal COMPONENT device FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY ${PROJECT_BINARY_DIR}/sim/generated/sim DESTINATION include/shoal COMPONENT device)
+foreach(header IN LISTS SHOAL_PLUGIN_HEADERS)
+  cmake_path(RELATIVE_PATH header BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
+  cmake_path(GET header PARENT_PATH folder)
+  install(FILES ${header} DESTINATION include/shoal/${folder} COMPONENT device)
+endforeach()
 install(DIRECTORY ${types_dir}/shoal ${PROJECT_BINARY_DIR}/messages/generated/shoal DESTINATION include/shoal
         COMPONENT client FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY ${types_dir}/reporter DESTINATION include/shoal/messages COMPONENT device

@@ -16,8 +16,8 @@ std::map<std::string, detail::MetricMaker>& metric_makers() {
 }  // namespace
 
 void detail::add_metric(sim::MetricKind kind, MetricMaker maker) {
-  metric_makers().emplace(kind.word, std::move(maker));
-  sim::MetricRegistry::instance().add(std::move(kind));
+  sim::MetricRegistry::instance().add(kind);
+  metric_makers().emplace(std::move(kind.word), std::move(maker));
 }
 
 std::unique_ptr<Metric> make_metric(const MetricContext& context) {

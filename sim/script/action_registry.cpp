@@ -2,7 +2,7 @@
 #include "sim/script/action_registry.hpp"
 
 #include <algorithm>
-#include <cassert>
+#include <stdexcept>
 
 namespace sim {
 
@@ -32,7 +32,7 @@ ActionRegistry& ActionRegistry::instance() {
 }
 
 void ActionRegistry::add(ActionKind kind) {
-  assert(find(kind.word) == nullptr);
+  if (find(kind.word) != nullptr) throw std::logic_error("action '" + kind.word + "' exists twice");
   const auto at = std::lower_bound(kinds_.begin(), kinds_.end(), kind.word,
                                    [](const auto& other, const std::string& word) { return other->word < word; });
   kinds_.insert(at, std::make_unique<ActionKind>(std::move(kind)));

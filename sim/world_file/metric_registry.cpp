@@ -2,7 +2,7 @@
 #include "sim/world_file/metric_registry.hpp"
 
 #include <algorithm>
-#include <cassert>
+#include <stdexcept>
 
 #include "sim/bus/bus.hpp"
 
@@ -49,7 +49,7 @@ MetricRegistry& MetricRegistry::instance() {
 }
 
 void MetricRegistry::add(MetricKind kind) {
-  assert(find(kind.word) == nullptr);
+  if (find(kind.word) != nullptr) throw std::logic_error("metric type '" + kind.word + "' exists twice");
   const auto at = std::lower_bound(kinds_.begin(), kinds_.end(), kind.word,
                                    [](const auto& other, const std::string& word) { return other->word < word; });
   kinds_.insert(at, std::make_unique<MetricKind>(std::move(kind)));

@@ -171,6 +171,25 @@ TEST(CommandLine, EveryExampleOfAHelpIsOneThatTheCommandTakes) {
   }
 }
 
+TEST(CommandLine, AProgramInThePathIsACommand) {
+  const ScratchFolder folder;
+  for (const char* name : {"greet", "list"}) {
+    const std::string path = folder.file(std::string("shoal-") + name);
+    write_file(path, "#!/bin/sh\necho \"of the path:\" \"$@\"\nexit 3\n");
+    std::filesystem::permissions(path, std::filesystem::perms::owner_all);
+  }
+  const std::string here = "PATH=" + folder.file("") + ":$PATH; shoal ";
+  const Ended greeted = run_shell(here + "greet --loud Ada");
+  EXPECT_EQ(greeted.exit_code, 3);
+  EXPECT_EQ(greeted.output, "of the path: --loud Ada\n");
+  EXPECT_EQ(run_shell(here + "help greet").output, "of the path: --help\n");
+  EXPECT_EQ(run_shell("shoal greet").exit_code, 2);
+  // A command of Shoal comes first.
+  EXPECT_THAT(run_shell(here + "list worlds").output, Not(HasSubstr("of the path")));
+  // The programs beside shoal are commands, too.
+  EXPECT_EQ(run_shell("shoal nav --list").output, run_shell("shoal-nav --list").output);
+}
+
 TEST(CommandLine, UnknownWordsAreNamedWithWhatWasMeantAndTheRightHelp) {
   const std::string world = source("worlds/minimal.yaml");
   const std::vector<std::pair<Words, std::string>> cases = {

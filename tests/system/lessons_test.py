@@ -16,8 +16,8 @@ import sys
 import tempfile
 import unittest
 
-from checkout_copy import in_own_network, own_bus
-from page_run import PageRun, Terminal
+from checkout_copy import in_own_network
+from page_run import PageRun, installed_terminal
 from page_steps import Change, File, commands_outside_blocks, steps_of
 
 SOURCE, BINARY_DIR, LESSON = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2]), sys.argv[3]
@@ -40,11 +40,7 @@ class Lesson(unittest.TestCase):
         home = tempfile.mkdtemp(prefix="lesson-test-", dir=BINARY_DIR)
         self.addCleanup(shutil.rmtree, home)
         subprocess.run(["cmake", "--install", BINARY_DIR, "--prefix", home + "/shoal"], check=True, capture_output=True)
-        work = os.path.join(home, "work")
-        os.mkdir(work)
-        # Debian's interpreter, which has NumPy, comes before others.
-        path = os.pathsep.join([home + "/shoal/bin", "/usr/bin", os.environ["PATH"]])
-        self.terminal = Terminal(work, dict(own_bus(), HOME=home, PATH=path))
+        self.terminal = installed_terminal(home, "work")
         self.addCleanup(self.terminal.close)
 
     def test_every_command_does_what_the_page_shows(self):

@@ -53,11 +53,6 @@ void fly(shoal::Client& client) {
 #include "shoal/twist_command_t.hpp"
 void fly(void (*on_scan)(const shoal::planar_lidar_t&)) {
 """, "}"),
-    "class Mine final : public OwnFilterEstimator<Mine> {  // or EstimatorOf<Mine>: all seven functions": ("""
-#include "autonomy/cooperative/estimator/estimator_registry.hpp"
-#include "autonomy/cooperative/filter/own_filter.hpp"
-namespace navigation {
-""", "}"),
 }
 
 

@@ -9,6 +9,7 @@ import sys
 import tempfile
 import time
 
+from checkout_copy import own_bus
 from page_steps import Change, Commands, File, PageError, missing_lines, steps_of
 
 READY_S = 200
@@ -47,6 +48,15 @@ class Terminal:
             kill(shell)
             printed = f"{shell.communicate()[0]}\nnot done after {self.limit_s} s"
         return shell.returncode, printed
+
+
+def installed_terminal(home, folder):
+    """A shell in a new folder of `home`, with the shoal that is installed in home/shoal."""
+    work = os.path.join(home, folder)
+    os.mkdir(work)
+    # Debian's interpreter, which has NumPy, comes before others.
+    path = os.pathsep.join([home + "/shoal/bin", "/usr/bin", os.environ["PATH"]])
+    return Terminal(work, dict(own_bus(), HOME=home, PATH=path))
 
 
 def kill(shell):

@@ -2,7 +2,7 @@
 // The live page in Chromium against the mock server.  A test fails on any console error, page error, refused content,
 // foreign request or missing file.
 import assert from 'node:assert/strict';
-import {readFile} from 'node:fs/promises';
+import {readdir, readFile} from 'node:fs/promises';
 import {describe, it} from 'node:test';
 import {gzipSync} from 'node:zlib';
 
@@ -244,6 +244,16 @@ describe('paths', () => {
       server.send({op: 'paths', items: []});
       await until(page, (p) => p.paths.length === 0);
     });
+  });
+});
+
+describe('layers', () => {
+  it('in modules of their own are all listed', async () => {
+    const folder = new URL('../../viewer/page/', import.meta.url);
+    const textOf = (file) => readFile(new URL(file, folder), 'utf8');
+    const list = await textOf('own_layers.js');
+    for (const file of (await readdir(folder)).filter((name) => name.endsWith('.js')))
+      if (/^export class Layer /m.test(await textOf(file))) assert.ok(list.includes(`import('./${file}')`), file);
   });
 });
 

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <iostream>
 
+#include "sim/config/diagnostics.hpp"
 #include "tools/command_line/help.hpp"
 #include "tools/command_line/parse.hpp"
 
@@ -107,6 +108,9 @@ int run_program(const char* name, const std::function<int()>& program) {
     return program();
   } catch (const std::invalid_argument& error) {
     return command_line::wrong_usage(name, error.what());
+  } catch (const sim::ConfigError& error) {
+    std::cerr << name << ": " << error.what() << '\n';
+    return exit_usage;
   } catch (const std::exception& error) {
     std::cerr << name << ": " << error.what() << '\n';
     return signal_caught != 0 ? 128 + signal_caught : exit_bus;

@@ -48,7 +48,8 @@ int take_part(shoal::Client& client, const Participation& participation, State& 
   return take_part(client, participation, Memory(state, participation.rewind_s), decide);
 }
 
-/// Runs a program: reports std::invalid_argument as wrong usage, any other exception as a bus error.
+/// Runs a program: reports std::invalid_argument and sim::ConfigError as wrong usage, any other exception as a
+/// bus error.
 int run_program(const char* name, const std::function<int()>& program);
 
 }  // namespace autonomy

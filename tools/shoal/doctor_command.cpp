@@ -48,6 +48,7 @@ static void add_doctor_command(CLI::App& app, int& exit_code) {
   command->callback([url, &exit_code] { exit_code = examine(*url); });
 }
 
-SHOAL_COMMAND(add_doctor_command);
+SHOAL_COMMAND(connect, "doctor", "Check whether LCM works on this machine, and print how to fix it",
+              add_doctor_command);
 
 }  // namespace tools

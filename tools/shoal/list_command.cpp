@@ -83,6 +83,6 @@ static void add_list_command(CLI::App& app, int& exit_code) {
   command->callback([what, &exit_code] { exit_code = list(*what); });
 }
 
-SHOAL_COMMAND(add_list_command);
+SHOAL_COMMAND(make, "list", "List shipped worlds and vehicles, device types or message types", add_list_command);
 
 }  // namespace tools

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "bridges/base/bus_error.hpp"
 #include "experiment/run/version.hpp"
@@ -42,6 +43,19 @@ std::string called_command(int argc, char** argv) {
   return {};
 }
 
+/// Continues as a program that is called as a command: with the words after its name, or to print its help.
+[[noreturn]] void become(std::string program, int argc, char** argv) {
+  std::string ask = "--help";
+  std::vector<char*> words{program.data()};
+  if (std::string_view(argv[1]) == "help")
+    words.push_back(ask.data());
+  else
+    words.insert(words.end(), argv + 2, argv + argc);
+  words.push_back(nullptr);
+  execv(program.c_str(), words.data());
+  throw std::runtime_error(program + " cannot be started: " + std::strerror(errno));
+}
+
 int run(int argc, char** argv) {
   CLI::App app{"Shoal simulates many vehicles and their devices on LCM channels.", "shoal"};
   // General options and help.
@@ -60,13 +74,17 @@ int run(int argc, char** argv) {
         {4, "bus or file error"},
         {5, "time-out"},
         {129, "ended by SIGHUP; 130 by SIGINT; 143 by SIGTERM"}},
-       {"`shoal COMMAND --help` has the options and exit codes of a command."}});
+       {"`shoal COMMAND --help` has the options and exit codes of a command.",
+        "A program shoal-NAME in PATH is the command `shoal NAME`."}});
   for (const std::string& problem : sim::DeviceRegistry::instance().take_problems())
     throw std::logic_error("this program was built wrong: " + problem);
   // Commands: all are named, and the one that is called is complete.
   int exit_code = tools::exit_ok;
   tools::list_commands(app);
   const std::string called = called_command(argc, argv);
+  const bool is_first = argc > 1 && argv[1][0] != '-';
+  if (const std::string program = tools::outside_command(called); is_first && !program.empty())
+    become(program, argc, argv);
   if (const std::string call = tools::meant_call(called); !call.empty()) {
     std::cerr << "shoal: unknown command '" << called << "'; use " << call << "\nSee `shoal --help`.\n";
     return tools::exit_usage;

@@ -262,6 +262,6 @@ static void add_run_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
-SHOAL_COMMAND(add_run_command);
+SHOAL_COMMAND(run, "run", "Run a world", add_run_command);
 
 }  // namespace tools

@@ -195,6 +195,6 @@ static void add_spy_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = spy(*arguments); });
 }
 
-SHOAL_COMMAND(add_spy_command);
+SHOAL_COMMAND(connect, "spy", "Watch the live channels: rates and decoded fields", add_spy_command);
 
 }  // namespace tools

@@ -219,6 +219,11 @@ export class CurrentArrows {
     this.setScene({water: null, origin_m: [0, 0, 0]});
   }
 
+  choose(get) {
+    this.which = get('currents');
+    this.depth_m = Math.max(0, Number(get('current-depth')) || 0);
+  }
+
   /** Takes the water of a scene. */
   setScene({water, origin_m}) {
     const {random} = this.motion ?? {};
@@ -243,7 +248,7 @@ export class CurrentArrows {
   }
 
   /** Places the arrows; the longest one is that of the fastest water. */
-  update(time_us, focus, distance_m, vehicles) {
+  update({time_us, focus, distance_m, vehicles}) {
     this.arrows = [];
     this.mesh.count = 0;
     if (this.which === 'off' || !this.motion.water || !this.motion.moves) return;

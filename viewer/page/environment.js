@@ -97,8 +97,10 @@ export class Environment {
     this.shadowsWanted = false;
   }
 
+  choose(get) { this.setClarity(Number(get('clarity')) >= 4 ? 0 : Number(get('clarity')) + 0.05); }
+
   /** Takes light and water of a scene. */
-  setScene(data, extent_m) {
+  setScene(data, {extent_m}) {
     const light = data.light;
     env.toSun.value.fromArray(light.to_sun).normalize();
     env.sunColor.value.setRGB(1, 0.97, 0.91).multiplyScalar(env.toSun.value.z > 0 ? light.sun : 0);
@@ -122,7 +124,7 @@ export class Environment {
   }
 
   /** Moves sky and shadows with the camera; `focus` is what it looks at. */
-  update(camera, focus, distance_m, shadows) {
+  update({camera, focus, distance_m, shadows}) {
     this.unproject.value.multiplyMatrices(camera.matrixWorld, camera.projectionMatrixInverse);
     const on = shadows && this.shadowsWanted;
     env.water.value.w = on ? 1 : 0;

@@ -93,6 +93,11 @@ export class Estimates {
     this.vehicles = [];
   }
 
+  choose(get) {
+    this.showGhosts = get('ghosts');
+    this.showEllipsoids = get('ellipsoids');
+  }
+
   /** Takes the vehicles of a scene; forgets all estimates. */
   setScene(data) {
     this.root.clear();
@@ -163,8 +168,10 @@ export class Estimates {
       }
   }
 
+  update({X_WVs, truthAt}) { this.place(X_WVs, truthAt); }
+
   /** Draws the estimates beside the true poses; truthAt(i, time_us) is the place of a vehicle then, null: unknown. */
-  update(X_WVs, truthAt) {
+  place(X_WVs, truthAt) {
     const lines = this.line.geometry.attributes.position;
     const matrix = new Matrix4();
     let ellipsoids = 0, count = 0;

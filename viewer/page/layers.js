@@ -7,14 +7,29 @@ import {Environment} from './environment.js';
 import {Estimates} from './estimates.js';
 import {Labels} from './labels.js';
 import {Dots, FieldsOfView, SelectionRing, Zones} from './overlays.js';
+import {OwnLayers} from './own_layers.js';
 import {isSoftware} from './resolution.js';
 import {Assets} from './shapes.js';
 import {Sounds} from './sounds.js';
-import {Trails} from './trails.js';
+import {trailColor, Trails} from './trails.js';
 import {NoToneMapping, PCFShadowMap, Scene, WebGLRenderer} from './vendor/three.js';
 import {Water} from './water.js';
 
-const TRAILS_MAX_S = 3600;
+// A layer has those of these functions that it needs:
+//   choose(get)          takes the switches under "Show": get(name) is the value of one
+//   setScene(data, app)  another scene; app has its vehicles and extent_m, half of its size
+//   rewind(time_us)      another time: what belongs to a later one, or to any other one, goes
+//   update(view)         before a frame; App.view has what depends on the time and the camera
+
+/** Layers of the scene, in the order of the calls. */
+export class Layers {
+  constructor(layers) { this.layers = layers; }
+
+  /** Calls a function of those that have it. */
+  tell(hook, ...words) {
+    for (const layer of this.layers) layer[hook]?.(...words);
+  }
+}
 
 /** Makes the parts that draw.  `problem` is called with a text, `changed` when there is something new to draw. */
 export function makeLayers(canvas, problem, changed) {
@@ -31,44 +46,31 @@ export function makeLayers(canvas, problem, changed) {
     water: new Water(scene, software),
     zones: new Zones(scene),
   };
+  const shared = new Set(scene.children);  // what two branches have in common
+  const drawn = {
+    sounds: new Sounds(scene),
+    estimates: new Estimates(scene, assets),
+    trails: new Trails(scene, ({color}) => trailColor(color)),
+    estimateTrails: new Trails(scene, () => trailColor('#ffb000'), 'ghosts'),
+    views: new FieldsOfView(scene),
+    currents: new CurrentArrows(scene),
+    dots: new Dots(scene),
+    ring: new SelectionRing(scene),
+    ownLayers: new OwnLayers(),
+  };
+  const otherEstimates = new Estimates(scene, assets);
+  const {environment, water, zones} = common;
   return {
     renderer,
     software,
     scene,
     assets,
     ...common,
-    shared: new Set(scene.children),  // what two branches have in common
-    sounds: new Sounds(scene),
-    estimates: new Estimates(scene, assets),
-    otherEstimates: new Estimates(scene, assets),
-    trails: new Trails(scene),
-    estimateTrails: new Trails(scene),
-    views: new FieldsOfView(scene),
-    currents: new CurrentArrows(scene),
-    dots: new Dots(scene),
-    ring: new SelectionRing(scene),
+    shared,
+    ...drawn,
+    otherEstimates,
+    layers: new Layers([environment, water, zones, ...Object.values(drawn)]),
     labels: new Labels(document.getElementById('labels')),
     cameras: new Cameras(canvas, (x, y) => common.bodies.groundAt(x, y)),
   };
-}
-
-/** Takes the switches under "Show". */
-export function applyOptions(layers, options) {
-  const get = (name) => options.get(name);
-  layers.water.shown = get('water');
-  layers.sounds.shown = get('sounds');
-  for (const estimates of [layers.estimates, layers.otherEstimates]) {
-    estimates.showGhosts = get('ghosts');
-    estimates.showEllipsoids = get('ellipsoids');
-  }
-  if (layers.paths) layers.paths.root.visible = get('paths');
-  layers.zones.root.visible = get('zones');
-  layers.bodies.setShapes(get('shapes'));
-  layers.currents.which = get('currents');
-  layers.currents.depth_m = Math.max(0, Number(get('current-depth')) || 0);
-  layers.views.which = get('sensors');
-  const length_s = Math.min(TRAILS_MAX_S, Math.max(0, Number(get('trails')) || 0));
-  layers.trails.length_s = layers.estimateTrails.length_s = length_s;
-  layers.estimateTrails.lines.visible = get('ghosts');
-  layers.environment.setClarity(Number(get('clarity')) >= 4 ? 0 : Number(get('clarity')) + 0.05);
 }

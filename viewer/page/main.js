@@ -7,7 +7,7 @@ import {Connection} from './connection.js';
 import {Drive} from './drive.js';
 import {Forms} from './forms.js';
 import {Instruments} from './instruments.js';
-import {applyOptions, makeLayers} from './layers.js';
+import {makeLayers} from './layers.js';
 import {Marks} from './marks.js';
 import {Details, Events, formatTime, Legend, Scores, VehicleList} from './panels.js';
 import {Past} from './past.js';
@@ -20,7 +20,6 @@ import {Address, Options, pressKey, setUpFolds, setUpKeyList, Tabs, Theme} from 
 import {SideBySide} from './side_by_side.js';
 import {Stability} from './stability.js';
 import {TimeBar} from './time_bar.js';
-import {trailColor} from './trails.js';
 import {describeVehicles, moveVehicles, truthAt} from './vehicles.js';
 import {Box3, Vector3} from './vendor/three.js';
 
@@ -159,12 +158,8 @@ class App {
 
   /** Removes what belongs to another time than the one shown from now on. */
   jumpTo(time_us) {
-    this.sounds.clear();
-    this.estimates.rewind(time_us);
-    this.paths?.rewind(time_us);
+    this.layers.tell('rewind', time_us);
     this.otherEstimates.rewind(time_us);
-    this.trails.clear();
-    this.estimateTrails.clear();
     this.instruments.rewind(time_us);
     this.live.drawn = this.past.playback.drawn = null;
     this.dirty = true;
@@ -184,20 +179,6 @@ class App {
     } else if (!this.past.active) {
       this.estimates.add(items);
     }
-  }
-
-  /** Takes the paths that hold; what draws them is loaded with the first of them. */
-  async takePaths(items) {
-    this.pathItems = items;
-    if (!this.paths) {
-      if (items.length === 0) return;
-      const {Paths} = await import('./paths.js');
-      this.paths ??= new Paths(this.scene);
-      if (this.data) this.paths.setScene(this.data, this.vehicles);
-      this.applyOptions();
-    }
-    this.paths.set(this.pathItems);
-    this.dirty = true;
   }
 
   /** Takes the greeting of a server, which may be another one than before. */
@@ -228,7 +209,6 @@ class App {
       scene: () => this.setScene(readScene(message)),
       status: () => this.setStatus(message),
       estimates: () => this.takeEstimates(message.branch, items),
-      paths: () => this.takePaths(items),
       sounds: () => this.sounds.origin_m && this.sounds.add(items),
       receptions: () => {
         if (this.sounds.origin_m) this.sounds.addReceptions(items);
@@ -241,6 +221,7 @@ class App {
       reply: () => this.drive.reply(message) || this.forms.reply(message) || this.timeBar.reply(message),
       error: () => this.problem(String(message.text)),
       dropped: () => this.problem(`the server dropped ${message.count} messages: this page is too slow`),
+      ...this.ownLayers.handlers(message, this),
       ...this.instruments.handlers(message),
     };
     if (Object.hasOwn(handlers, message.op)) handlers[message.op]();
@@ -277,20 +258,9 @@ class App {
     this.owners =
         new Map(this.vehicles.map((vehicle) => [data.bodies[vehicle.body].owner || vehicle.name, vehicle.name]));
     // Everything else that is drawn.
-    this.environment.setScene(data, this.extent_m);
-    this.water.setScene(data);
-    this.currents.setScene(data);
-    this.sounds.setScene(data, this.extent_m);
-    this.estimates.setScene(data);
+    this.layers.tell('setScene', data, this);
     this.otherEstimates.setScene(data);
-    this.paths?.setScene(data, this.vehicles);
-    this.views.setScene(data);
-    this.zones.setScene(data, this.extent_m);
     this.instruments.setScene(data);
-    const colors = this.vehicles.map((vehicle) => trailColor(vehicle.color));
-    this.trails.reset(colors);
-    this.estimateTrails.reset(colors.map(() => trailColor('#ffb000')));
-    this.dots.setScene(colors, this.vehicles.map((vehicle) => vehicle.radius_m));
     this.applyOptions();
     // Panels.
     $('world').textContent = data.world || 'Shoal';
@@ -403,7 +373,10 @@ class App {
 
   /** Takes the switches under "Show". */
   applyOptions() {
-    applyOptions(this, this.options);
+    const get = (name) => this.options.get(name);
+    this.layers.tell('choose', get);
+    this.otherEstimates.choose(get);
+    this.bodies.setShapes(get('shapes'));
     this.dirty = true;
   }
 
@@ -489,29 +462,34 @@ class App {
         time_us, estimates.map((one) => (one.estimate ? new Vector3().setFromMatrixPosition(one.X_WV) : null)));
   }
 
+  /** What the layers draw, which depends on the time and the camera. */
+  get view() {
+    const {playback, camera, cameras, vehicles, vehicle, selected} = this;
+    return {
+      time_us: playback.time_us,
+      speed: playback.newest?.speed ?? 1,
+      camera,
+      focus: cameras.focus,
+      distance_m: camera.position.distanceTo(cameras.focus),
+      height_px: this.sides.regions[0].height * this.renderer.getPixelRatio(),
+      onBoard: ['first', 'device'].includes(cameras.mode),
+      shadows: this.options.get('shadows'),
+      level_m: this.level(),
+      vehicles,
+      vehicle,
+      selected,
+      X_WB: this.bodies.X_WB,
+      X_WVs: vehicles.map(({X_WV}) => X_WV),
+      truthAt: (i, at_us) => truthAt(vehicles[i], at_us, this.bodies, playback),
+    };
+  }
+
   /** Draws a frame. */
   draw() {
-    const {time_us} = this.playback;
-    const X_WVs = this.vehicles.map((vehicle) => vehicle.X_WV);
-    const focus = this.cameras.focus, distance_m = this.camera.position.distanceTo(focus);
-    const height_px = this.sides.regions[0].height * this.renderer.getPixelRatio();
-    // Everything that depends on the time or the camera.
-    if (this.currents.motion.setTime(time_us)) this.environment.setLevel(this.level());
-    this.environment.update(this.camera, focus, distance_m, this.options.get('shadows'));
-    this.bodies.follow(this.camera, distance_m);
-    this.water.update(time_us, this.camera);
-    this.currents.update(time_us, focus, distance_m, this.vehicles);
-    this.sounds.update(time_us, this.playback.newest?.speed ?? 1);
-    this.estimates.update(X_WVs, (i, at_us) => truthAt(this.vehicles[i], at_us, this.bodies, this.playback));
-    this.paths?.update(this.level());
-    this.views.update(this.bodies.X_WB, this.selected);
-    this.trails.update(time_us);
-    this.estimateTrails.update(time_us);
-    if (!this.options.get('ghosts')) this.estimateTrails.lines.visible = false;
-    this.dots.update(X_WVs, this.camera, height_px);
-    const vehicle = this.vehicle;
-    const onBoard = ['first', 'device'].includes(this.cameras.mode);
-    this.ring.update(vehicle?.X_WV ?? null, vehicle?.radius_m ?? 1, this.camera, height_px, onBoard);
+    if (this.currents.motion.setTime(this.playback.time_us)) this.environment.setLevel(this.level());
+    const {view} = this;
+    this.bodies.follow(this.camera, view.distance_m);
+    this.layers.tell('update', view);
     this.sides.render();
     this.instruments.recorder.frame();
     this.panelsStale = true;

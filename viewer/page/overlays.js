@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Drawings that explain the scene: fields of view of devices, zones, dots and rings of vehicles.
 import {matrixOf} from './bodies.js';
+import {trailColor} from './trails.js';
 import {
   BufferAttribute,
   BufferGeometry,
@@ -74,6 +75,8 @@ export class FieldsOfView {
     scene.add(this.root);
   }
 
+  choose(get) { this.which = get('sensors'); }
+
   /** Takes the devices of a scene. */
   setScene(data) {
     this.root.traverse((object) => object.geometry?.dispose());
@@ -91,7 +94,7 @@ export class FieldsOfView {
   }
 
   /** Moves them with their bodies. */
-  update(X_WB, selected) {
+  update({X_WB, selected}) {
     for (const lines of this.root.children) {
       const {vehicle, body, X_BS} = lines.userData;
       lines.visible = this.which === 'all' || (this.which === 'selected' && vehicle === selected);
@@ -110,8 +113,10 @@ export class Zones {
     scene.add(this.root);
   }
 
+  choose(get) { this.root.visible = get('zones'); }
+
   /** Takes the zones of a scene. */
-  setScene(data, extent_m) {
+  setScene(data, {extent_m}) {
     this.root.traverse((object) => object.geometry?.dispose());
     this.root.clear();
     this.labels = [];
@@ -175,19 +180,19 @@ export class Dots {
     scene.add(this.points);
   }
 
-  /** Takes colors and radii of the vehicles. */
-  setScene(colors, radii_m) {
+  setScene(data, {vehicles}) {
+    const colors = vehicles.map(({color}) => trailColor(color));
     const geometry = new BufferGeometry();
     this.position = new BufferAttribute(new Float32Array(3 * colors.length), 3);
     geometry.setAttribute('position', this.position);
     geometry.setAttribute('tint', new BufferAttribute(new Float32Array(colors.flatMap((c) => c.toArray())), 3));
-    geometry.setAttribute('radius_m', new BufferAttribute(new Float32Array(radii_m), 1));
+    geometry.setAttribute('radius_m', new BufferAttribute(new Float32Array(vehicles.map(({radius_m}) => radius_m)), 1));
     this.points.geometry.dispose();
     this.points.geometry = geometry;
   }
 
   /** Moves the dots to the vehicles; `height_px`: of the canvas. */
-  update(X_WVs, camera, height_px) {
+  update({X_WVs, camera, height_px}) {
     this.pixels.value = camera.projectionMatrix.elements[5] * height_px;
     X_WVs.forEach((X, i) => this.position?.setXYZ(i, X.elements[12], X.elements[13], X.elements[14]));
     if (this.position) this.position.needsUpdate = true;
@@ -208,9 +213,10 @@ export class SelectionRing {
   }
 
   /** Draws it level, with a tick along the heading of the vehicle. */
-  update(X_WV, radius_m, camera, height_px, hidden) {
-    this.lines.visible = X_WV !== null && !hidden;
+  update({vehicle, camera, height_px, onBoard}) {
+    this.lines.visible = vehicle !== null && !onBoard;
     if (!this.lines.visible) return;
+    const {X_WV, radius_m} = vehicle;
     const at = new Vector3().setFromMatrixPosition(X_WV);
     const meter_px =
         camera.projectionMatrix.elements[5] * height_px / 2 / Math.max(0.01, at.distanceTo(camera.position));

@@ -39,7 +39,7 @@ function pointsOf({points}) {
 }
 
 /** The newest path of each channel, drawn. */
-export class Paths {
+export class Layer {
   constructor(scene) {
     this.root = new Group();
     this.items = [];
@@ -48,11 +48,13 @@ export class Paths {
   }
 
   /** Takes the vehicles of a scene; the paths stay. */
-  setScene(data, vehicles) {
+  setScene(data, {vehicles}) {
     this.origin = new Vector3(...data.origin_m);
     this.vehicles = new Map(vehicles.map((vehicle) => [vehicle.name, vehicle]));
     this.set(this.items);
   }
+
+  take({items}) { this.set(items); }
 
   /** Takes all paths, in place of those before. */
   set(items) {
@@ -93,7 +95,7 @@ export class Paths {
   /**
    * Draws them; those without a depth at the height of their vehicle.  level_m: of the still water, above the origin.
    */
-  update(level_m) {
+  update({level_m}) {
     for (const one of this.drawn) {
       const low = one.vehicle ? one.vehicle.at.z + HEIGHT_M : HEIGHT_M - this.origin.z;
       const key = `${level_m.toFixed(3)} ${low.toFixed(3)}`;

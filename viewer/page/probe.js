@@ -61,7 +61,7 @@ export function probe(app) {
                                                                           axes_m: one.axes?.lengths_m ?? null,
                                                                           axes: one.axes?.vectors ?? null,
                                                                         })),
-    paths: app.paths?.probe(world) ?? [],
+    ...app.ownLayers.probe(world),
     sounds: app.sounds.rings.map((ring) => ({
                                    id: ring.sound.id,
                                    outer_m: ring.outer_m,

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Choices of the user: theme, layers, keys; and the view, in the fragment of the address.
+import {addSwitches} from './own_layers.js';
 
 const $ = (id) => document.getElementById(id);
 const THEME_KEY = 'shoal.theme';
@@ -134,6 +135,7 @@ export class Theme {
 /** Switches under "Show"; changed() is called after each change. */
 export class Options {
   constructor(changed) {
+    addSwitches($('o-zones').parentElement);
     for (const input of $('options').querySelectorAll('input, select')) input.addEventListener('input', changed);
     $('show').addEventListener('click', () => this.toggle());
   }

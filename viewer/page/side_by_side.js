@@ -237,7 +237,7 @@ export class SideBySide {
       return {...vehicle, X_WV, at: new Vector3().setFromMatrixPosition(X_WV)};
     });
     this.others = all.filter((vehicle) => Number.isFinite(vehicle.at.x));
-    otherEstimates.update(
+    otherEstimates.place(
         all.map((vehicle) => vehicle.X_WV),
         (i, at_us) => (Number.isFinite(all[i].at.x) ? truthAt(vehicles[i], at_us, bodies, ghosts) : null));
   }

@@ -89,6 +89,10 @@ export class Sounds {
     this.clear();
   }
 
+  choose(get) { this.shown = get('sounds'); }
+
+  rewind() { this.clear(); }
+
   /** Forgets all sounds: another scene, or the time was set. */
   clear() {
     this.sounds = [];
@@ -98,7 +102,7 @@ export class Sounds {
   }
 
   /** Takes the size and origin of a scene. */
-  setScene(data, extent_m) {
+  setScene(data, {extent_m}) {
     this.clear();
     this.origin_m = data.origin_m;
     this.reach_m = Math.max(100, 4 * extent_m);
@@ -138,7 +142,7 @@ export class Sounds {
   }
 
   /** Draws what is on its way at a time; `speed`: simulated seconds per second. */
-  update(time_us, speed) {
+  update({time_us, speed}) {
     const lasting_us = MARK_S * 1e6 * Math.max(1, Math.min(100, speed));
     this.marks = this.marks.filter((mark) => mark.time_us > time_us - lasting_us && mark.time_us < time_us + 60e6);
     this.visibleMarks = this.shown ? this.marks.filter((mark) => mark.time_us <= time_us) : [];

@@ -13,6 +13,7 @@ import {
 
 const SEGMENTS_MAX = 150000;
 const SAMPLES_MAX = 1500;
+const TRAILS_MAX_S = 3600;
 
 const VERTEX = /* glsl */ `
 attribute float stamp;
@@ -32,9 +33,10 @@ void main() {
   #include <colorspace_fragment>
 }`;
 
-/** Trails of a fixed number of moving points. */
+/** Trails of a fixed number of moving points; colorOf(vehicle): color of one, option: the switch that they have. */
 export class Trails {
-  constructor(scene) {
+  constructor(scene, colorOf, option = null) {
+    Object.assign(this, {colorOf, option});
     this.material = new ShaderMaterial({
       uniforms: {now: {value: 0}, length_s: {value: 60}},
       vertexShader: VERTEX,
@@ -48,6 +50,15 @@ export class Trails {
     scene.add(this.lines);
     this.length_s = 60;
     this.reset([]);
+  }
+
+  setScene(data, {vehicles}) { this.reset(vehicles.map(this.colorOf)); }
+
+  rewind() { this.clear(); }
+
+  choose(get) {
+    this.length_s = Math.min(TRAILS_MAX_S, Math.max(0, Number(get('trails')) || 0));
+    this.shown = this.option === null || get(this.option);
   }
 
   /** Starts empty trails, one for each color. */
@@ -110,10 +121,10 @@ export class Trails {
   }
 
   /** Draws the trails of the last length_s before a time. */
-  update(time_us) {
+  update({time_us}) {
     this.material.uniforms.now.value = time_us * 1e-6;
     this.material.uniforms.length_s.value = this.length_s;
-    this.lines.visible = this.length_s > 0 && !this.empty;
+    this.lines.visible = this.shown && this.length_s > 0 && !this.empty;
   }
 
   /** Number of samples and last position of a trail, for tests. */

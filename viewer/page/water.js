@@ -122,6 +122,8 @@ export class Water {
     scene.add(this.mesh);
   }
 
+  choose(get) { this.shown = get('water'); }
+
   /** Takes the water of a scene. */
   setScene(data) {
     this.data = data.water;
@@ -136,7 +138,7 @@ export class Water {
   }
 
   /** Moves the waves to a time, and the surface under the camera. */
-  update(time_us, camera) {
+  update({time_us, camera}) {
     this.mesh.visible = this.shown && this.data !== null && this.data !== undefined;
     if (!this.mesh.visible) return;
     this.setTime(time_us);

@@ -34,6 +34,7 @@ bool detail::add_family(std::string prefix, AlgorithmFamily make) {
 
 bool detail::add_algorithm(Algorithm algorithm) {
   std::string name = algorithm.name;
+  if (algorithms_by_name().contains(name)) throw std::logic_error("algorithm '" + name + "' exists twice");
   return algorithms_by_name().emplace(std::move(name), std::move(algorithm)).second;
 }
 

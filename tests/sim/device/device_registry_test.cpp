@@ -4,6 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <set>
+#include <stdexcept>
+
+#include "sim/script/action_registry.hpp"
+#include "sim/world_file/metric_registry.hpp"
 
 namespace {
 
@@ -58,6 +62,20 @@ TEST(DeviceRegistry, RefusesASecondTypeOfTheSameName) {
   registry.add(type);
   EXPECT_EQ(registry.take_problems(), std::vector<std::string>{"device type 'lidar' exists twice"});
   EXPECT_EQ(registry.take_problems(), std::vector<std::string>{});
+  EXPECT_EQ(registry.all().size(), before);
+}
+
+TEST(MetricRegistry, RefusesASecondTypeOfTheSameName) {
+  sim::MetricRegistry& registry = sim::MetricRegistry::instance();
+  const std::size_t before = registry.all().size();
+  EXPECT_THROW(registry.add({.word = "tilt", .meaning = {}, .figures = {}, .make_params = {}}), std::logic_error);
+  EXPECT_EQ(registry.all().size(), before);
+}
+
+TEST(ActionRegistry, RefusesASecondTypeOfTheSameName) {
+  sim::ActionRegistry& registry = sim::ActionRegistry::instance();
+  const std::size_t before = registry.all().size();
+  EXPECT_THROW(registry.add({"log", "writes", "text", true, {}}), std::logic_error);
   EXPECT_EQ(registry.all().size(), before);
 }
 

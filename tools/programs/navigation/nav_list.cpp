@@ -12,6 +12,7 @@
 #include "tools/command_line/help.hpp"
 #include "tools/command_line/name_list.hpp"
 #include "tools/command_line/parse.hpp"
+#include "tools/command_line/plugin_option.hpp"
 
 namespace navigation {
 
@@ -25,6 +26,7 @@ int run_list_command(int argc, const char* const* argv) {
   CLI::App app{"Lists algorithms of cooperative navigation.", "shoal-nav"};
   app.add_flag("--list", list, "print name and meaning of each algorithm")->required();
   command_line::add_name_list(app, "--algorithm", names, "list only these, such as python:FILE.Class");
+  command_line::add_plugin_option(app);
   command_line::set_help_end(app, {{"shoal-nav --list", "shoal-nav --list --algorithm python:mine.Mine"},
                                    {{0, "all are known"}, {2, "wrong usage, or an algorithm is not known"}},
                                    {}});

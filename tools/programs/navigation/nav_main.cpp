@@ -7,6 +7,7 @@
 #include "autonomy/cooperative/driver/nav_arguments.hpp"
 #include "autonomy/cooperative/driver/nav_pilot.hpp"
 #include "shoal/sim_info_t.hpp"
+#include "tools/command_line/plugin_option.hpp"
 #include "tools/programs/marine_options.hpp"
 #include "tools/programs/navigation/nav_list.hpp"
 #include "tools/programs/navigation/nav_offline.hpp"
@@ -19,6 +20,7 @@ struct Options {
   autonomy::MarineOptions marine;
   autonomy::Participation participation;
   std::string algorithm = "naive";
+  std::string plugin;
   int frame_bytes = 32;
   std::string sound = "straight";
 };
@@ -86,6 +88,7 @@ int run(int argc, char** argv) {
   autonomy::add_name(declared, options.pilot.name, "vehicle to steer").required();
   declared.text("algorithm", "NAME", options.algorithm,
                 "algorithm, see docs/guides/compare_estimators.md, or python:FILE.Class");
+  declared.text("plugin", "FILE", options.plugin, "library with further algorithms");
   declared.integer("frame_bytes", options.frame_bytes, 11, 255,
                    "length of each frame, equal for all vehicles: 10 and its payload");
   declared.number("depth_m", options.pilot.depth_m, 0, 10'000, "depth to dive to; 0: a surface craft");
@@ -125,6 +128,7 @@ int run(int argc, char** argv) {
   if (follows || !options.marine.leader.empty())
     throw std::invalid_argument(std::string(follows ? "--follow" : "--leader") +
                                 " needs frames with the state of a vehicle, which only shoal-coop-auv sends");
+  if (!options.plugin.empty()) command_line::load_plugin(options.plugin);
   options.pilot.algorithm = &navigation::algorithm_named(options.algorithm);
   if (!options.pilot.algorithm->make)
     throw std::invalid_argument(options.algorithm + " has the measurements of all vehicles: it runs with --log only");

@@ -17,6 +17,7 @@
 #include "tools/command_line/help.hpp"
 #include "tools/command_line/name_list.hpp"
 #include "tools/command_line/parse.hpp"
+#include "tools/command_line/plugin_option.hpp"
 #include "tools/programs/navigation/score_file.hpp"
 
 namespace navigation {
@@ -129,6 +130,7 @@ int run_offline_command(int argc, const char* const* argv) {
   command_line::add_name_list(app, "--algorithm", options.algorithms,
                               "algorithms, each for all vehicles on the recorded deliveries")
       ->required();
+  command_line::add_plugin_option(app);
   app.add_option("--out", options.out, "folder for the estimates, as LCM event log, CSV, TUM and MR.CLAM files")
       ->type_name("DIR");
   app.add_option("--scores", options.scores, "file for the scores as JSON, with all digits")->type_name("FILE");

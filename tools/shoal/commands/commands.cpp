@@ -1,57 +1,40 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/shoal/commands/commands.hpp"
 
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
 #include <utility>
 #include <vector>
 
+#include "sim/program/find_program.hpp"
 #include "tools/shoal/commands/command_library.hpp"
 
 namespace tools {
 
 namespace {
 
-/// Groups of the help.
-constexpr const char *run = "run worlds", *look = "look at runs", *measure = "measure", *make = "make files",
-                     *connect = "work with a running simulator";
-
 struct Command {
-  const char* group;
+  CommandGroup group;
   const char* name;
   const char* library;  ///< empty: the command is part of the program
   const char* description;
 };
 
-/// Commands in the order of the help.  CMakeLists.txt lists the sources of each library.
+/// By name, those of the program first.
 constexpr Command commands[] = {
-    {run, "run", "", "Run a world"},
-    {run, "replay", "records", "Replay the world of a log, and compare"},
-    {run, "check", "files", "Check a world, vehicle, study or motion file without running it"},
-    {look, "view", "view", "Serve a live page of a log, or of a run in another process, in 3-D"},
-    {look, "snap", "film", "Render an image of a world or a recorded run at a given time"},
-    {look, "film", "film", "Make a film of a recorded run, or of a world without programs"},
-    {look, "map", "film", "Write the true map of a world or log, or one that a program published, for ROS map_server"},
-    {look, "log", "records", "Inspect and convert LCM event logs"},
-    {look, "snapshot", "records", "Show the contents of a snapshot file"},
-    {look, "medium", "models", "Show the water and the air of a world at a place and a time"},
-    {look, "acoustics", "models", "Show the propagation of sound between two positions under water"},
-    {measure, "study", "study", "Run a world with many seeds and settings, and compare"},
-    {measure, "tune", "study", "Search for the settings of a study that make a figure best"},
-    {measure, "score", "records", "Score a log again, or an estimate that was made elsewhere"},
-    {measure, "report", "view", "Make one HTML page of the results of a run or a study"},
-    {measure, "bench", "models", "Measure the speed of this machine on standard scenes"},
-    {measure, "fidelity", "models", "Compare vehicles with published trajectories"},
-    {make, "new", "files", "Write a world, a vehicle or a program to start with"},
-    {make, "list", "", "List shipped worlds and vehicles, device types or message types"},
-    {make, "describe", "files", "Describe a device, a message, a program or the keys of a file"},
-    {make, "motion", "motion", "Record, show, check, edit, play and convert motions of robots with joints"},
-    {make, "import", "models", "Convert robots and data sets of other programs"},
-    {make, "mesh", "models", "Describe a mesh file, and convert it for worlds and vehicles"},
-    {connect, "control", "", "Send a request to a running simulator and print its answer"},
-    {connect, "drive", "drive", "Drive a vehicle of a running simulator by hand"},
-    {connect, "spy", "", "Watch the live channels: rates and decoded fields"},
-    {connect, "doctor", "", "Check whether LCM works on this machine, and print how to fix it"},
-    {connect, "bug", "records", "Pack a run into one archive for a report to the developers"},
+#define SHOAL_COMMAND_ROW(library, group, name, description, add) {CommandGroup::group, name, library, description},
+#include "tools/shoal/commands/command_table.inc"
+#undef SHOAL_COMMAND_ROW
 };
+
+/// Headings of the help, in its order.
+constexpr std::pair<CommandGroup, const char*> headings[] = {{CommandGroup::run, "run worlds"},
+                                                             {CommandGroup::look, "look at runs"},
+                                                             {CommandGroup::measure, "measure"},
+                                                             {CommandGroup::make, "make files"},
+                                                             {CommandGroup::connect, "work with a running simulator"}};
 
 /// Commands that people know from other programs, and what does the same.
 constexpr std::pair<const char*, const char*> calls_elsewhere[] = {
@@ -94,6 +77,17 @@ bool register_command(AddCommand add) {
   return true;
 }
 
+std::string outside_command(const std::string& name) {
+  const auto is_named = [&](const Command& command) { return command.name == name; };
+  if (name.empty() || name.find('/') != std::string::npos || std::ranges::any_of(commands, is_named)) return {};
+  for (const std::string& folder : sim::program_folders()) {
+    const std::string path = folder + "/shoal-" + name;
+    std::error_code none;
+    if (std::filesystem::is_regular_file(path, none) && access(path.c_str(), X_OK) == 0) return path;
+  }
+  return {};
+}
+
 std::string meant_call(const std::string& name) {
   for (const auto& [known, call] : calls_elsewhere)
     if (name == known) return call;
@@ -101,7 +95,9 @@ std::string meant_call(const std::string& name) {
 }
 
 void list_commands(CLI::App& app) {
-  for (const Command& command : commands) app.add_subcommand(command.name, command.description)->group(command.group);
+  for (const auto& [group, heading] : headings)
+    for (const Command& command : commands)
+      if (command.group == group) app.add_subcommand(command.name, command.description)->group(heading);
 }
 
 void complete_command(CLI::App& app, int& exit_code, const std::string& name) {

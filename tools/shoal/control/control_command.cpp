@@ -135,6 +135,6 @@ static void add_control_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = control(*arguments); });
 }
 
-SHOAL_COMMAND(add_control_command);
+SHOAL_COMMAND(connect, "control", "Send a request to a running simulator and print its answer", add_control_command);
 
 }  // namespace tools

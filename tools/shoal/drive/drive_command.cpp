@@ -355,6 +355,6 @@ static void add_drive_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = drive(*arguments); });
 }
 
-SHOAL_COMMAND(add_drive_command);
+SHOAL_COMMAND(connect, "drive", "Drive a vehicle of a running simulator by hand", add_drive_command);
 
 }  // namespace tools

@@ -203,6 +203,6 @@ static void add_check_command(CLI::App& app, int& exit_code) {
   });
 }
 
-SHOAL_COMMAND(add_check_command);
+SHOAL_COMMAND(run, "check", "Check a world, vehicle, study or motion file without running it", add_check_command);
 
 }  // namespace tools

@@ -116,6 +116,6 @@ static void add_describe_command(CLI::App& app, int& exit_code) {
   });
 }
 
-SHOAL_COMMAND(add_describe_command);
+SHOAL_COMMAND(make, "describe", "Describe a device, a message, a program or the keys of a file", add_describe_command);
 
 }  // namespace tools

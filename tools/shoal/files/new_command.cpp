@@ -177,6 +177,6 @@ static void add_new_command(CLI::App& app, int& exit_code) {
                               {"Existing files are never overwritten."}});
 }
 
-SHOAL_COMMAND(add_new_command);
+SHOAL_COMMAND(make, "new", "Write a world, a vehicle or a program to start with", add_new_command);
 
 }  // namespace tools

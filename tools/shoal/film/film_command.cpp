@@ -185,6 +185,6 @@ static void add_film_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = film(*arguments); });
 }
 
-SHOAL_COMMAND(add_film_command);
+SHOAL_COMMAND(look, "film", "Make a film of a recorded run, or of a world without programs", add_film_command);
 
 }  // namespace tools

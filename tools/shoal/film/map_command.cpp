@@ -189,6 +189,7 @@ static void add_map_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = map(*arguments); });
 }
 
-SHOAL_COMMAND(add_map_command);
+SHOAL_COMMAND(look, "map", "Write the true map of a world or log, or one that a program published, for ROS map_server",
+              add_map_command);
 
 }  // namespace tools

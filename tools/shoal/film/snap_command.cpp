@@ -295,6 +295,6 @@ static void add_snap_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = snap(*arguments); });
 }
 
-SHOAL_COMMAND(add_snap_command);
+SHOAL_COMMAND(look, "snap", "Render an image of a world or a recorded run at a given time", add_snap_command);
 
 }  // namespace tools

@@ -376,6 +376,7 @@ static void add_acoustics_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = show(*arguments); });
 }
 
-SHOAL_COMMAND(add_acoustics_command);
+SHOAL_COMMAND(look, "acoustics", "Show the propagation of sound between two positions under water",
+              add_acoustics_command);
 
 }  // namespace tools

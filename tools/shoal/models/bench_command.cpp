@@ -142,6 +142,6 @@ static void add_bench_command(CLI::App& app, int& exit_code) {
   });
 }
 
-SHOAL_COMMAND(add_bench_command);
+SHOAL_COMMAND(measure, "bench", "Measure the speed of this machine on standard scenes", add_bench_command);
 
 }  // namespace tools

@@ -121,6 +121,6 @@ static void add_fidelity_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = fidelity(*arguments); });
 }
 
-SHOAL_COMMAND(add_fidelity_command);
+SHOAL_COMMAND(measure, "fidelity", "Compare vehicles with published trajectories", add_fidelity_command);
 
 }  // namespace tools

@@ -200,6 +200,6 @@ static void add_import_command(CLI::App& app, int& exit_code) {
                  {}});
 }
 
-SHOAL_COMMAND(add_import_command);
+SHOAL_COMMAND(make, "import", "Convert robots and data sets of other programs", add_import_command);
 
 }  // namespace tools

@@ -164,6 +164,6 @@ static void add_medium_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = look(*arguments); });
 }
 
-SHOAL_COMMAND(add_medium_command);
+SHOAL_COMMAND(look, "medium", "Show the water and the air of a world at a place and a time", add_medium_command);
 
 }  // namespace tools

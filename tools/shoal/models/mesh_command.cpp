@@ -92,6 +92,6 @@ static void add_mesh_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = describe_and_convert(*options); });
 }
 
-SHOAL_COMMAND(add_mesh_command);
+SHOAL_COMMAND(make, "mesh", "Describe a mesh file, and convert it for worlds and vehicles", add_mesh_command);
 
 }  // namespace tools

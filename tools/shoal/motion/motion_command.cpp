@@ -59,6 +59,7 @@ static void add_motion_command(CLI::App& app, int& exit_code) {
                               {}});
 }
 
-SHOAL_COMMAND(add_motion_command);
+SHOAL_COMMAND(make, "motion", "Record, show, check, edit, play and convert motions of robots with joints",
+              add_motion_command);
 
 }  // namespace tools

@@ -8,9 +8,11 @@
 #include "sim/world_file/load_world.hpp"
 #include "tools/command_line/checks.hpp"
 #include "tools/command_line/help.hpp"
+#include "tools/command_line/plugin_option.hpp"
 
 namespace tools {
 
+using command_line::add_plugin_option;
 using command_line::number_from;
 using command_line::one_of;
 using command_line::whole_from;
@@ -24,9 +26,6 @@ enum ExitCode {
   exit_bus = 4,  ///< bus or file error
   exit_timeout = 5
 };
-
-/// Adds `--plugin FILE`; the plugin is loaded before the command runs.
-void add_plugin_option(CLI::App& command);
 
 /// Adds `--log-level LEVEL`, the level of messages on stderr, except for the error that ends the command.  To be called
 /// first, so that it applies to all other options.

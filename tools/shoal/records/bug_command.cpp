@@ -61,6 +61,6 @@ static void add_bug_command(CLI::App& app, int& exit_code) {
   command->callback([options, &exit_code] { exit_code = pack(*options); });
 }
 
-SHOAL_COMMAND(add_bug_command);
+SHOAL_COMMAND(connect, "bug", "Pack a run into one archive for a report to the developers", add_bug_command);
 
 }  // namespace tools

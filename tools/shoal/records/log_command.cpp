@@ -279,6 +279,6 @@ static void add_log_command(CLI::App& app, int& exit_code) {
        {}});
 }
 
-SHOAL_COMMAND(add_log_command);
+SHOAL_COMMAND(look, "log", "Inspect and convert LCM event logs", add_log_command);
 
 }  // namespace tools

@@ -139,6 +139,6 @@ static void add_replay_command(CLI::App& app, int& exit_code) {
   });
 }
 
-SHOAL_COMMAND(add_replay_command);
+SHOAL_COMMAND(run, "replay", "Replay the world of a log, and compare", add_replay_command);
 
 }  // namespace tools

@@ -86,6 +86,6 @@ static void add_score_command(CLI::App& app, int& exit_code) {
   });
 }
 
-SHOAL_COMMAND(add_score_command);
+SHOAL_COMMAND(measure, "score", "Score a log again, or an estimate that was made elsewhere", add_score_command);
 
 }  // namespace tools

@@ -81,6 +81,6 @@ static void add_snapshot_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = show(*arguments); });
 }
 
-SHOAL_COMMAND(add_snapshot_command);
+SHOAL_COMMAND(look, "snapshot", "Show the contents of a snapshot file", add_snapshot_command);
 
 }  // namespace tools

@@ -235,6 +235,6 @@ static void add_study_command(CLI::App& app, int& exit_code) {
   });
 }
 
-SHOAL_COMMAND(add_study_command);
+SHOAL_COMMAND(measure, "study", "Run a world with many seeds and settings, and compare", add_study_command);
 
 }  // namespace tools

@@ -153,6 +153,6 @@ static void add_tune_command(CLI::App& app, int& exit_code) {
   });
 }
 
-SHOAL_COMMAND(add_tune_command);
+SHOAL_COMMAND(measure, "tune", "Search for the settings of a study that make a figure best", add_tune_command);
 
 }  // namespace tools

@@ -151,6 +151,6 @@ static void add_report_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = report(*arguments); });
 }
 
-SHOAL_COMMAND(add_report_command);
+SHOAL_COMMAND(measure, "report", "Make one HTML page of the results of a run or a study", add_report_command);
 
 }  // namespace tools

@@ -229,6 +229,6 @@ static void add_view_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = view(*arguments); });
 }
 
-SHOAL_COMMAND(add_view_command);
+SHOAL_COMMAND(look, "view", "Serve a live page of a log, or of a run in another process, in 3-D", add_view_command);
 
 }  // namespace tools

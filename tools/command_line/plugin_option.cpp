@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "tools/command_line/plugin_option.hpp"
+
+#include <vector>
+
 #include "sim/device/plugin.hpp"
-#include "tools/shoal/options/shared_options.hpp"
 
-namespace tools {
+namespace command_line {
 
-namespace {
-
-void load(const std::string& file) {
+void load_plugin(const std::string& file) {
   sim::Diagnostics diagnostics;
   const sim::SourcePlace place{sim::intern_file_name("--plugin " + file), 0, 0};
   const std::string found = sim::find_plugin(file, "");
@@ -14,16 +15,16 @@ void load(const std::string& file) {
   diagnostics.throw_if_any();
 }
 
-}  // namespace
-
 void add_plugin_option(CLI::App& command) {
   const auto load_all = [](const std::vector<std::string>& files) {
-    for (const std::string& file : files) load(file);
+    for (const std::string& file : files) load_plugin(file);
   };
-  command.add_option_function<std::vector<std::string>>("--plugin", load_all, "plugin library with additional devices")
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--plugin", load_all, "plugin library with additional devices, metrics, actions or algorithms")
       ->type_name("FILE")
       ->type_size(1)
       ->allow_extra_args(false);
 }
 
-}  // namespace tools
+}  // namespace command_line
