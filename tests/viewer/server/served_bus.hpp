@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "tests/viewer/server/log_page.hpp"
+#include "viewer/server/bus_view.hpp"
 
 namespace served_bus {
 
