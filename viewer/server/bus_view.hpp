@@ -35,7 +35,7 @@ class BusView {
   std::int64_t newest_utime_ = 0;
   const std::string version_, bus_;
   std::string world_;
-  // For the rate of simulated time.
+  // Used to measure the rate of simulated time.
   Clock::time_point status_at_{};
   std::int64_t status_us_ = 0;
 };

@@ -22,6 +22,7 @@ TEST(RunParts, ATapReceivesWhatIsPublishedOnEveryBus) {
   experiment::RunParts::Options options;
   options.tap = [&](std::string_view channel, std::span<const std::byte>, sim::Time) { heard.emplace_back(channel); };
   test::PartsOfARun run(options, two_buses);
+  heard.clear();  // what the parts said at their start
   experiment::RunBuses& buses = run.parts.buses;
   EXPECT_TRUE(buses.has_listeners());
   buses.outer().publish("one", word, sim::Time{0});
@@ -37,6 +38,7 @@ TEST(RunParts, ATapOfWhatIsPublishedReceivesItWhileTheBusesAreMuted) {
   options.tap = [&](std::string_view channel, std::span<const std::byte>, sim::Time) { heard.emplace_back(channel); };
   options.taps = experiment::RunBuses::Tap::published;
   test::PartsOfARun run(options);
+  heard.clear();  // what the parts said at their start
   const auto network = run.parts.buses.network().open_mailbox("one", 10);
   run.parts.buses.set_muted(true);
   run.parts.buses.outer().publish("one", word, sim::Time{0});
