@@ -92,7 +92,7 @@ std::optional<std::string> WorldTime::execute(const std::string& command, const 
 }
 
 std::string WorldTime::run_until(double time_s) {
-  if (!(time_s > sim::to_seconds(world_.now()) && time_s <= 1e9))
+  if (!(time_s > 0 && time_s <= 1e9) || sim::from_seconds(time_s) <= world_.now())
     throw std::runtime_error(fmt::format("'until' needs a time after now ({:.6g} s) and at most 1e9 s, got {}",
                                          sim::to_seconds(world_.now()), time_s));
   control_.clear_until();

@@ -52,7 +52,7 @@ std::optional<std::string> direction_to_ode(const std::string& file, const Inclu
 }
 
 bool may_read_ode(const std::string& file) {
-  for (const char* room : {"sim/ode/", "sim/rays/", "sim/physics/"})
+  for (const char* room : {"sim/ode/", "sim/rays/", "sim/collision/", "sim/physics/"})
     if (file.starts_with(room)) return true;
   return false;
 }

@@ -8,6 +8,7 @@
 #include "autonomy/behaviors/vector_field_histogram.hpp"
 #include "autonomy/behaviors/velocity_obstacles.hpp"
 #include "sim/base/math.hpp"
+#include "tests/autonomy/second.hpp"
 
 namespace avoiding_craft {
 
