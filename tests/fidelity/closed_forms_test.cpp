@@ -79,7 +79,7 @@ std::vector<Mention> mentions_in(const std::string& source) {
 TEST(ClosedForms, EveryRowAboutWaterIsUsedByATest) {
   std::vector<Mention> mentions;
   for (const auto& entry : fs::recursive_directory_iterator(test_support::source_path("tests"))) {
-    if (entry.path().extension() != ".cpp") continue;
+    if (entry.path().extension() != ".cpp" && entry.path().extension() != ".hpp") continue;
     std::ifstream in(entry.path());
     const std::string source{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
     if (source.find("closed_form") == std::string::npos) continue;

@@ -77,7 +77,7 @@ TEST(DeclaredOptions, SayWhatIsWrong) {
       {{"--name=a", "--start-m=[1,"}, "--start-m:1:"},
       {{"--name=a", "--orders=[[1]]"}, "--orders: 'orders[1]' must be 2 to 3 numbers, got 1"},
       {{"--name=a", "--orders=7"}, "--orders: 'orders' must be a list of [time_s, depth_m, speed_mps], got '7'"},
-      {{"--name=a", "--start-m=[1,2]", "--orders=[[1,2]]"}, " does not apply to --"},
+      {{"--name=a", "--start-m=[1,2]", "--orders=[[1,2]]"}, "--start-m cannot be combined with --orders"},
       {{"--name=a", "--describe"}, "--describe takes no other options"},
       {{"--name=a", "--orderss=1"}, "unknown option '--orderss'; did you mean '--orders'?"},
   };

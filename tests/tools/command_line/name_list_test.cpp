@@ -25,7 +25,7 @@ TEST(NameList, HasNamesBetweenCommas) {
 }
 
 TEST(NameList, AnEmptyNameIsAnError) {
-  for (const char* text : {"", ",", "hip,", ",hip", "hip,,knee"})
+  for (const char* text : {",", "hip,", ",hip", "hip,,knee"})
     EXPECT_THROW(names_of({std::string("--joints=") + text}), CLI::ValidationError) << text;
 }
 

@@ -24,7 +24,7 @@ TEST(AcousticsCommand, AnEndNeedsTheOther) {
   std::ofstream(folder.file("sea.yaml")) << "shoal: 1\nmedium: {water: {}}\n";
   const test::Called called = test::call_shoal({"acoustics", folder.file("sea.yaml"), "--from", "0,0,-5"});
   EXPECT_EQ(called.exit_code, 2);
-  EXPECT_THAT(called.err, HasSubstr("--from needs --to, and --to needs --from"));
+  EXPECT_THAT(called.err, HasSubstr("--from: needs --to, and --to needs --from"));
 }
 
 }  // namespace

@@ -10,11 +10,11 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A hip that swings to 10 degrees within a second.
+/// A hip that swings within a second.
 std::string swing(const test_support::ScratchFolder& folder) {
   std::ofstream(folder.file("swing.yaml"))
       << "shoal: 1\nmotion: swing\nvehicle: dog\n"
-         "keys: [{at_s: 0, joints_deg: {hip: 0}}, {at_s: 1, joints_deg: {hip: 10}}]\n";
+         "keys: [{at_s: 0, joints: {hip: 0}}, {at_s: 1, joints: {hip: 0.2}}]\n";
   return folder.file("swing.yaml");
 }
 

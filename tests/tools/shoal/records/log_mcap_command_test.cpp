@@ -25,9 +25,9 @@ TEST(LogMcapCommand, SaysWhatIsWrongWithItsOptions) {
     EXPECT_EQ(called.exit_code, 2);
     return called.err;
   };
-  EXPECT_THAT(wrong(log.folder.file("run.bag"), "a"), HasSubstr("--out must end in .mcap, got"));
+  EXPECT_THAT(wrong(log.folder.file("run.bag"), "a"), HasSubstr("--out: must end in .mcap, got"));
   EXPECT_THAT(wrong(log.folder.file("run.mcap"), "(a"), HasSubstr("'(a' is not a regular expression"));
-  EXPECT_THAT(wrong(log.path, "a"), HasSubstr("--out must not be the log"));
+  EXPECT_THAT(wrong(log.path, "a"), HasSubstr("--out: must not be the log"));
 }
 
 }  // namespace
