@@ -222,7 +222,7 @@ TEST_F(MotionRecord, ItsDurationMayBeBeyondTheEndOfTheFile) {
                         "--punch-out, got 7"));
   EXPECT_THAT(errors_of({"--append", "--duration", "1"}),
               HasSubstr("--duration must be above 1.6 s, where the recording starts, got 1"));
-  EXPECT_THAT(errors_of({"--append", "--punch-in", "1"}), HasSubstr("--punch-in does not apply to --append"));
+  EXPECT_THAT(errors_of({"--append", "--punch-in", "1"}), HasSubstr("--punch-in cannot be combined with --append"));
   write_file(file_,
              "shoal: 1\nmotion: wave\nloop: true\nkeys:\n  - {at_s: 0, joints: {mouth: -10}}\n"
              "  - {at_s: 1, joints: {mouth: -10}}\n");
