@@ -12,9 +12,8 @@ using testing::HasSubstr;
 
 /// A hip that swings within a second.
 std::string swing(const test_support::ScratchFolder& folder) {
-  std::ofstream(folder.file("swing.yaml"))
-      << "shoal: 1\nmotion: swing\nvehicle: dog\n"
-         "keys: [{at_s: 0, joints: {hip: 0}}, {at_s: 1, joints: {hip: 0.2}}]\n";
+  std::ofstream(folder.file("swing.yaml")) << "shoal: 1\nmotion: swing\nvehicle: dog\n"
+                                              "keys: [{at_s: 0, joints: {hip: 0}}, {at_s: 1, joints: {hip: 0.2}}]\n";
   return folder.file("swing.yaml");
 }
 
