@@ -59,6 +59,17 @@ struct LockstepWorld : ServedWorld {
     ack.count = static_cast<std::int32_t>(published.size());
     test.send("sim.ack", ack);
   }
+  /// Sends the first message that `client` has published in session 5, on "cmd", once more.
+  void resend(const std::string& client, char data) {
+    shoal::sim_resent_t bundle{};
+    bundle.client = client;
+    bundle.session = 5;
+    bundle.sequence = 1;
+    bundle.of_client = 1;
+    bundle.count = 1;
+    bundle.message = {{"cmd", 1, {static_cast<std::uint8_t>(data)}}};
+    test.send("sim.resent", bundle);
+  }
   /// `while_waiting` is called each time that the world waits for someone.
   bridges::LockstepOutcome synchronize(const std::function<void()>& while_waiting = [] {}) {
     return lockstep.synchronize([&](std::chrono::milliseconds) { while_waiting(); },

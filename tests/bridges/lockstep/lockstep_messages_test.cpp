@@ -34,20 +34,10 @@ TEST(LockstepAnswers, SaysWhatDoesNotMatchInWhatIsSentAgain) {
   Service s("{timeout_s: 0.02}");
   const auto reader = s.gate.open_mailbox("cmd");
   ASSERT_TRUE(s.join("liar", "{session: 5}").ok);
-  shoal::sim_resent_t bundle{};
-  bundle.client = "liar";
-  bundle.session = 5;
-  bundle.sequence = 1;
-  bundle.of_client = 1;
-  bundle.count = 1;
-  bundle.message.resize(1);
-  bundle.message[0].channel = "cmd";
-  bundle.message[0].data = {'2'};
-  bundle.message[0].size = 1;
   testing::internal::CaptureStdout();
   EXPECT_THROW(s.synchronize([&] {
     s.acknowledge(0, "liar", 5, 1, {{"cmd", "1"}});
-    s.test.send("sim.resent", bundle);
+    s.resend("liar", '2');
   }),
                bridges::LockstepTimeout);
   EXPECT_THAT(testing::internal::GetCapturedStdout(),
@@ -100,17 +90,7 @@ TEST(LockstepAnswers, WhatIsSentAgainTooLateIsNoBadMessage) {
     s.test.bus.publish("cmd", bytes_of("1"), sim::Time(0));
   });
   EXPECT_EQ(s.admitted(), "1");  // the step after; the simulator had asked for it once, and the answer comes now
-  shoal::sim_resent_t bundle{};
-  bundle.client = "pilot";
-  bundle.session = 5;
-  bundle.sequence = 1;
-  bundle.of_client = 1;
-  bundle.count = 1;
-  bundle.message.resize(1);
-  bundle.message[0].channel = "cmd";
-  bundle.message[0].data = {'1'};
-  bundle.message[0].size = 1;
-  s.test.send("sim.resent", bundle);
+  s.resend("pilot", '1');
   s.synchronize([&] { s.acknowledge(0, "pilot", 5, 1); });
   EXPECT_EQ(s.lockstep.bad_messages(), 0);
 }

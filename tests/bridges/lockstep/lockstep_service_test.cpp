@@ -126,14 +126,7 @@ TEST(LockstepService, RequestsWhatAClientPublishedUntilItIsThere) {
     for (const auto& resend_request : s.resend_requests.take_all()) {
       EXPECT_EQ(resend_request.of_client, 1);
       EXPECT_EQ(resend_request.first, 0);
-      shoal::sim_resent_t bundle{};
-      bundle.client = "pilot";
-      bundle.session = 5;
-      bundle.sequence = 1;
-      bundle.of_client = 1;
-      bundle.count = 1;
-      bundle.message = {{"cmd", 1, {'1'}}};
-      s.test.send("sim.resent", bundle);
+      s.resend("pilot", '1');
       sent = true;
     }
   });
