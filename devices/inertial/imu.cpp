@@ -3,11 +3,13 @@
 
 #include <numbers>
 
-#include "devices/inertial/imu_presets.hpp"
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/imu_t.hpp"
+#include "sim/config/presets.hpp"
 
 namespace devices {
+
+const sim::Presets& imu_presets();  // imu_presets.yaml
 
 namespace {
 
@@ -65,15 +67,7 @@ double time_constant_s(double bandwidth_Hz) {
 }  // namespace
 
 void Imu::Params::read(sim::ParamReader& in) {
-  std::vector<std::string> names;
-  for (const ImuPreset& unit : imu_presets()) names.push_back(unit.name);
-  in.read_one_of("preset", preset, names, "preset of a product by its data sheet; the keys below override it");
-  // The preset supplies the defaults of the keys that follow.
-  for (const ImuPreset& unit : imu_presets()) {
-    if (unit.name != preset || in.describing()) continue;
-    gyro = unit.gyro;
-    accel = unit.accel;
-  }
+  imu_presets().read(in, *this, {"ideal"}, "preset of a product by its data sheet; the keys below override it");
   in.read_or_word("bandwidth_Hz", bandwidth_Hz, sim::above(0), {"unlimited"},
                   "bandwidth of a first-order low pass on the true values");
   in.read("gyro_noise", gyro_noise, "further error of each axis, rad/s");
