@@ -39,7 +39,7 @@ void read_gyro(sim::ParamReader& in, InertialParams& gyro) {
   read_in(in, "gyro_scale_ppm", gyro.scale, unit::ppm, "scale error: standard deviation, drawn once for each axis");
   read_in(in, "gyro_misalignment_mrad", gyro.misalignment_rad, unit::mrad,
           "misalignment: standard deviation, drawn once for each pair of axes");
-  read_range(in, "gyro_range_dps", gyro.range, unit::degps, "deg/s, the output is limited to +-this");
+  read_range(in, "gyro_range_dps", gyro.range, unit::degps, "limit of the magnitude of the output, deg/s");
   read_in(in, "gyro_resolution_dps", gyro.resolution, unit::degps, "deg/s, step of the output; 0: none");
 }
 
@@ -56,7 +56,7 @@ void read_accel(sim::ParamReader& in, InertialParams& accel) {
   read_in(in, "accel_scale_ppm", accel.scale, unit::ppm, "scale error: standard deviation, drawn once for each axis");
   read_in(in, "accel_misalignment_mrad", accel.misalignment_rad, unit::mrad,
           "misalignment: standard deviation, drawn once for each pair of axes");
-  read_range(in, "accel_range_g", accel.range, unit::mps2_per_g, "the output is limited to +-this");
+  read_range(in, "accel_range_g", accel.range, unit::mps2_per_g, "limit of the magnitude of the output, g");
   read_in(in, "accel_resolution_mg", accel.resolution, unit::mg, "step of the output; 0: none");
 }
 
