@@ -11,7 +11,7 @@
 
 namespace sim {
 
-/// Number of a T in a pool; negative: none.  A type of its own, so that it is not an index of another list.
+/// Number of a T in a pool; negative: none.  A separate type, so that it is not an index of another list.
 template <typename T>
 struct Id {
   int number = -1;

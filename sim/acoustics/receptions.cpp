@@ -8,6 +8,20 @@
 
 namespace sim {
 
+namespace {
+
+void set_level(Flight& flight, const SonarEquation::Level& found) {
+  flight.level = found.level;
+  flight.ended = found.ended;
+  flight.closing_mps = found.closing_mps;
+  flight.bent = found.bent;
+  flight.shadow = found.shadow;
+  flight.arrives_W = found.arrives_W;
+  if (found.blocked) flight.loss = SignalLoss::blocked;
+}
+
+}  // namespace
+
 void Receptions::handle(FlightId id, AcousticEvent kind, Time due, ArrivalEffects& effects) {
   if (kind == AcousticEvent::near) predict(id, due, effects);
   if (kind == AcousticEvent::start) start(id, effects);
@@ -83,23 +97,17 @@ void Receptions::start(FlightId id, ArrivalEffects& effects) {
     return;
   }
   const SonarEquation::Level found = sonar_.level_at(to, p_W, flight.started, transmission);
-  flight.level = found.level;
-  flight.ended = found.ended;
-  flight.closing_mps = found.closing_mps;
-  flight.bent = found.bent;
-  flight.shadow = found.shadow;
-  flight.arrives_W = found.arrives_W;
-  if (found.blocked) flight.loss = SignalLoss::blocked;
-  if (found.later_s > 0 && !flight.delayed) {
-    // The direct path is blocked: the first arrival is an echo.
-    flight.delayed = true;
-    flight.travel_time_s += found.later_s;
-    flight.started += from_seconds(found.later_s);
-    flights_.update_hash(id, effects.sum);
-    effects.schedule(flight.started, AcousticEvent::start);
+  set_level(flight, found);
+  if (found.later_s <= 0 || flight.delayed) {
+    receive(id, found, to, effects);
     return;
   }
-  receive(id, found, to, effects);
+  // The direct path is blocked: the first arrival is an echo.
+  flight.delayed = true;
+  flight.travel_time_s += found.later_s;
+  flight.started += from_seconds(found.later_s);
+  flights_.update_hash(id, effects.sum);
+  effects.schedule(flight.started, AcousticEvent::start);
 }
 
 /// Starts a reception whose level is known.

@@ -22,7 +22,7 @@ inline double share_in_band(const PresentSound& of, const PresentSound& band) {
 }  // namespace
 
 void PresentSound::visit_state(StateArchive& archive) {
-  // In 64 bits; a number that is no int does not exist either, which flights_are_below() finds.
+  // In 64 bits; a number that does not fit does not exist either, which flights_are_below() finds.
   std::int64_t number = flight.number;
   archive(number, centre_Hz, bandwidth_Hz, power, ended, message);
   if (archive.restoring())

@@ -17,7 +17,7 @@ TEST(Flights, TheSumOfTheirHashesIsKeptUpToDate) {
   sound.flights.update_hash(second);
   const std::uint64_t both = sound.hash_of_flights();
   sound.flights.discard_sum();
-  EXPECT_EQ(sound.hash_of_flights(), both) << "computed anew";
+  EXPECT_EQ(sound.hash_of_flights(), both) << "computed again";
   sound.flights.remove(first);
   const std::uint64_t one = sound.hash_of_flights();
   EXPECT_NE(one, both);
