@@ -94,7 +94,7 @@ TEST(SignalReceiver, AnOverlapCountsForTheBitsThatItHits) {
 
 TEST(SignalReceiver, AnInterferenceThatEndsInTheMiddleDoesNoMoreHarm) {
   SignalReceiver receiver;
-  receiver.begin({2, 25000, 4000, to_power(Decibels{4}), 400ms}, 0s);
+  receiver.begin({{2}, 25000, 4000, to_power(Decibels{4}), 400ms}, 0s);
   ASSERT_EQ(arrive(receiver, signal(1, 14)), SignalLoss::none);
   SignalReceiver::Outcome outcome;
   EXPECT_FALSE(receiver.end({2}, 400ms, outcome));
@@ -107,7 +107,7 @@ TEST(SignalReceiver, OnlyWhatFallsIntoTheBandDisturbs) {
   for (const auto& [centre_Hz, share] : {std::pair{25000.0, 1.0}, {27000.0, 0.5}, {29000.0, 0.0}, {40000.0, 0.0}}) {
     SignalReceiver receiver;
     ASSERT_EQ(arrive(receiver, signal(1, 20)), SignalLoss::none);
-    receiver.begin({2, centre_Hz, 4000, to_power(Decibels{15}), 1s}, 0s);
+    receiver.begin({{2}, centre_Hz, 4000, to_power(Decibels{15}), 1s}, 0s);
     SignalReceiver::Outcome outcome;
     ASSERT_TRUE(receiver.end({1}, 1s, outcome));
     EXPECT_NEAR(to_decibels(outcome.worst_sinr).dB(), 20 - 10 * std::log10(1 + share * std::pow(10, 1.5)), 1e-9);
@@ -123,7 +123,7 @@ TEST(SignalReceiver, AnotherMessageIsNoNoiseWhereItIsNotMuchWeaker) {
       taken.bit_rate_bps = 40;
       taken.protection = to_power(Decibels{6});
       ASSERT_EQ(arrive(receiver, taken), SignalLoss::none);
-      receiver.begin({2, 25000, 4000, to_power(Decibels{other_dB}), 1200ms, message}, 900ms);
+      receiver.begin({{2}, 25000, 4000, to_power(Decibels{other_dB}), 1200ms, message}, 900ms);
       SignalReceiver::Outcome outcome;
       ASSERT_TRUE(receiver.end({1}, 1s, outcome));
       // 10 of the 100 bits are guessed; as noise it leaves at least 19 dB.
@@ -137,7 +137,7 @@ TEST(SignalReceiver, AnotherMessageIsNoNoiseWhereItIsNotMuchWeaker) {
 TEST(SignalReceiver, ASoundThatStopsDisturbsNoLongerAndIsNotUnderstood) {
   SignalReceiver receiver;
   ASSERT_EQ(arrive(receiver, signal(1, 14)), SignalLoss::none);
-  receiver.begin({2, 25000, 4000, to_power(Decibels{4}), 1s}, 0s);
+  receiver.begin({{2}, 25000, 4000, to_power(Decibels{4}), 1s}, 0s);
   receiver.silence({2}, 250ms);
   SignalReceiver::Outcome outcome;
   ASSERT_TRUE(receiver.end({1}, 1s, outcome));
