@@ -117,7 +117,7 @@ AcousticModem::AcousticModem(const Params& params, const sim::DeviceContext& con
       transducer_(*this, params.receiver, context.sound_site()),
       wake_flag_(context.wake_flag()) {
   if (params.serial) serial_ = std::make_unique<SerialMessages>(*params.serial, context);
-  transducer_.belong_to({group_of(params), vehicle_.name()});
+  transducer_.set_address({group_of(params), vehicle_.name()});
   host_.shared.of(message_modems).join(transducer_.full_name(), *this);
 }
 

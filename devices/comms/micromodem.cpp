@@ -144,7 +144,7 @@ void Micromodem::take_line(const NmeaLines::Line& line, sim::Time now) {
 
 void Micromodem::take_address() {
   list(protocol_.address());
-  transducer_.belong_to({group(), std::to_string(address_)});
+  transducer_.set_address({group(), std::to_string(address_)});
 }
 
 void Micromodem::act(const sim::ActContext& context) {
@@ -217,8 +217,8 @@ MicromodemSide::Sound Micromodem::interrogate_beacons(sim::Time at, bool on_the_
   return send(std::move(signal), at, on_the_second);
 }
 
-sim::Time Micromodem::call_back() {
-  transducer_.call_back();
+sim::Time Micromodem::cancel_pending() {
+  transducer_.cancel_pending();
   return transducer_.busy_until();
 }
 

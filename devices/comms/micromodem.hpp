@@ -86,7 +86,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
   void emit(const std::string& body) override;
   Sound transmit(const MicromodemPacket& packet, sim::Time at, bool on_the_second) override;
   Sound interrogate_beacons(sim::Time at, bool on_the_second) override;
-  sim::Time call_back() override;
+  sim::Time cancel_pending() override;
   std::int64_t utc_us(sim::Time at) const override;
   double elapsed_s(sim::Time from, sim::Time to) const override;
   /// Applies an address that the host may have changed.

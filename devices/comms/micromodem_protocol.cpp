@@ -86,7 +86,7 @@ bool MicromodemProtocol::busy(const char* module, sim::Time now) {
 
 void MicromodemProtocol::restart(sim::Time up) {
   due_.clear();
-  sending_until_ = side_.call_back();
+  sending_until_ = side_.cancel_pending();
   cycle_.reset(), expected_.reset(), ping_.reset(), beacon_ping_.reset();
   clock_offset_us_ = 0, clock_set_ = config_.synchronous;
   pulse_time_.reset();

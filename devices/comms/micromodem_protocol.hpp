@@ -41,7 +41,7 @@ class MicromodemSide {
   /// Interrogates the transponders.
   virtual Sound interrogate_beacons(sim::Time at, bool on_the_second) = 0;
   /// Cancels transmissions that have not started.  Returns the end of the transmission in progress.
-  virtual sim::Time call_back() = 0;
+  virtual sim::Time cancel_pending() = 0;
   /// Returns the time by the vehicle clock: microseconds since 1970 in UTC.
   virtual std::int64_t utc_us(sim::Time at) const = 0;
   /// Returns the interval between two times, s, measured by a counter at the rate of that clock and unaffected by steps

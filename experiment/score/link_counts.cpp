@@ -72,7 +72,7 @@ LinkCounts link_counts(const sim::World& world, const std::string& vehicle, cons
   for (const sim::Transducer* transducer : world.acoustics().transducers()) {
     if (transducer == nullptr || !is_asked(transducer->full_name(), vehicle, device)) continue;
     add(transducer->counts());
-    sum.acoustic = sum.acoustic || transducer->has_owner();
+    sum.acoustic = sum.acoustic || transducer->has_address();
   }
   // Queues of modems.
   for (const auto& mounted : world.devices()) {

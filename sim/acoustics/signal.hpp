@@ -13,10 +13,13 @@
 
 namespace sim {
 
+class StateArchive;
+
 /// Address of a message or of its receiver, by which deliveries are counted.
 struct Audience {
   std::string group;    ///< interoperable group, such as kind and network of modems
   std::string address;  ///< in the group; of a message, empty: broadcast to the group
+  bool operator==(const Audience&) const = default;
 
   template <typename Archive>
   void visit_state(Archive& archive) {
@@ -86,6 +89,8 @@ enum class SignalLoss {
 inline constexpr int signal_losses = 14;
 /// Name of a cause, such as `half_duplex`.
 const char* signal_loss_word(SignalLoss loss);
+/// Checks a restored loss, which is used as an index of counts.  Throws SnapshotError.
+void check_loss(SignalLoss loss, const StateArchive& archive);
 
 /// Reception of a signal by a listening transducer.
 struct Reception {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sim/base/record_hash.hpp"
 
@@ -19,6 +20,14 @@ inline double share_in_band(const PresentSound& of, const PresentSound& band) {
 }
 
 }  // namespace
+
+void PresentSound::visit_state(StateArchive& archive) {
+  // In 64 bits; a number that does not fit does not exist either, which flights_are_below() finds.
+  std::int64_t number = flight.number;
+  archive(number, centre_Hz, bandwidth_Hz, power, ended, message);
+  if (archive.restoring())
+    flight = {static_cast<int>(std::clamp<std::int64_t>(number, -1, std::numeric_limits<int>::max()))};
+}
 
 SignalReceiver::Others SignalReceiver::others(const PresentSound& but, Time at) const {
   Others sum;
@@ -81,8 +90,8 @@ void SignalReceiver::begin(const PresentSound& sound, Time at) {
   present_sum_ += hash_of(sound);
 }
 
-SignalLoss SignalReceiver::take(const TakenSignal& signal, const Rules& rules, std::int64_t& displaced) {
-  displaced = -1;
+SignalLoss SignalReceiver::take(const TakenSignal& signal, const Rules& rules, FlightId& displaced) {
+  displaced = {};
   // Test detection against noise, then against other sounds.
   const PowerRatio needed = to_power(Decibels{rules.detection_dB});
   const PowerRatio still = signal.noise + signal.disturbing;
@@ -109,7 +118,7 @@ SignalLoss SignalReceiver::take(const TakenSignal& signal, const Rules& rules, s
   return SignalLoss::none;
 }
 
-void SignalReceiver::set_noise(std::int64_t flight, PowerRatio noise, Time at) {
+void SignalReceiver::set_noise(FlightId flight, PowerRatio noise, Time at) {
   for (Taken& taken : taken_)
     if (taken.signal.sound.flight == flight) {
       count_bits(taken, at);
@@ -119,18 +128,18 @@ void SignalReceiver::set_noise(std::int64_t flight, PowerRatio noise, Time at) {
 
 bool SignalReceiver::flights_are_below(std::size_t count) const {
   const auto below = [&](const PresentSound& sound) {
-    return sound.flight >= 0 && static_cast<std::uint64_t>(sound.flight) < count;
+    return sound.flight.valid() && static_cast<std::size_t>(sound.flight.number) < count;
   };
   return std::all_of(present().begin(), present().end(), below) &&
          std::all_of(taken_.begin(), taken_.end(), [&](const Taken& taken) { return below(taken.signal.sound); });
 }
 
-bool SignalReceiver::takes(std::int64_t flight) const {
+bool SignalReceiver::takes(FlightId flight) const {
   return std::any_of(taken_.begin(), taken_.end(),
                      [&](const Taken& taken) { return taken.signal.sound.flight == flight; });
 }
 
-void SignalReceiver::silence(std::int64_t flight, Time at) {
+void SignalReceiver::silence(FlightId flight, Time at) {
   count_bits(at);
   for (PresentSound& sound : present()) {
     if (sound.flight != flight) continue;
@@ -142,7 +151,7 @@ void SignalReceiver::silence(std::int64_t flight, Time at) {
     if (taken.signal.sound.flight == flight) taken.signal.sound.power = taken.signal.disturbing = PowerRatio{0};
 }
 
-bool SignalReceiver::end(std::int64_t flight, Time at, Outcome& outcome) {
+bool SignalReceiver::end(FlightId flight, Time at, Outcome& outcome) {
   count_bits(at);
   const auto taken =
       std::find_if(taken_.begin(), taken_.end(), [&](const Taken& each) { return each.signal.sound.flight == flight; });
@@ -162,9 +171,9 @@ bool SignalReceiver::end(std::int64_t flight, Time at, Outcome& outcome) {
   return was_taken;
 }
 
-std::int64_t SignalReceiver::drop() {
-  if (taken_.empty()) return -1;
-  const std::int64_t flight = taken_.back().signal.sound.flight;
+FlightId SignalReceiver::drop() {
+  if (taken_.empty()) return {};
+  const FlightId flight = taken_.back().signal.sound.flight;
   taken_.pop_back();
   return flight;
 }
@@ -188,7 +197,7 @@ void SignalReceiver::add_content(StateArchive& hash) {
 }
 
 std::uint64_t SignalReceiver::hash_of(const PresentSound& sound) {
-  return record_hash({static_cast<std::uint64_t>(sound.flight), static_cast<std::uint64_t>(sound.ended.count()),
+  return record_hash({static_cast<std::uint64_t>(sound.flight.number), static_cast<std::uint64_t>(sound.ended.count()),
                       word_of(sound.power.linear()), word_of(sound.centre_Hz), word_of(sound.bandwidth_Hz),
                       static_cast<std::uint64_t>(sound.message)});
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "sim/acoustics/numbered_pool.hpp"
 #include "sim/acoustics/signal.hpp"
 #include "sim/state/state_archive.hpp"
 
@@ -13,12 +14,12 @@ namespace sim {
 
 /// Sound that is present at the receiver.
 struct PresentSound {
-  std::int64_t flight = -1;  ///< its number in the channel
+  FlightId flight;
   double centre_Hz = 0, bandwidth_Hz = 0;
   PowerRatio power{0};   ///< re 1 uPa^2, in its own band
   Time ended{0};         ///< end time, known in advance
   bool message = false;  ///< of a modem: see TakenSignal::protection
-  void visit_state(StateArchive& archive) { archive(flight, centre_Hz, bandwidth_Hz, power, ended, message); }
+  void visit_state(StateArchive& archive);
 };
 
 /// Properties of a signal that a receiver tries to lock on to.
@@ -58,19 +59,20 @@ class SignalReceiver {
 
   /// Adds a sound that starts.  Call before take() of the same sound.
   void begin(const PresentSound& sound, Time at);
-  /// Tries to lock on to a signal that has started.  `displaced`: flight that was captured by it, or -1.  A signal that
+  /// Tries to lock on to a signal that has started.  `displaced`: flight from which it captured the receiver, or
+  /// none.  A signal that
   /// would capture more than one band is ignored.
-  SignalLoss take(const TakenSignal& signal, const Rules& rules, std::int64_t& displaced);
+  SignalLoss take(const TakenSignal& signal, const Rules& rules, FlightId& displaced);
   /// Sets the noise in the band of a signal being received, from this time on.
-  void set_noise(std::int64_t flight, PowerRatio noise, Time at);
+  void set_noise(FlightId flight, PowerRatio noise, Time at);
   /// Whether the receiver is locked on to a flight.
-  bool takes(std::int64_t flight) const;
+  bool takes(FlightId flight) const;
   /// Sets the power of a sound to zero before its end; its reception continues until the end.
-  void silence(std::int64_t flight, Time at);
+  void silence(FlightId flight, Time at);
   /// Removes a sound that ends.  Returns true, with the outcome, when the receiver was locked on to it.
-  bool end(std::int64_t flight, Time at, Outcome& outcome);
-  /// Aborts the reception of the last signal; returns its flight, or -1 when there was none.
-  std::int64_t drop();
+  bool end(FlightId flight, Time at, Outcome& outcome);
+  /// Aborts the reception of the last signal; returns its flight, or none.
+  FlightId drop();
   bool taking() const { return !taken_.empty(); }
   /// Whether all its flights have numbers in [0, count).
   bool flights_are_below(std::size_t count) const;

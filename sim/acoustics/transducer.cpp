@@ -20,11 +20,11 @@ void ReceiverConfig::read(ParamReader& in) {
 
 Transducer::Transducer(AcousticListener& listener, const ReceiverConfig& config, SoundSite site)
     : listener_(listener), config_(config), site_(std::move(site)) {
-  site_.channel.join(*this);
+  site_.channel.add(*this);
 }
 
 Transducer::~Transducer() {
-  site_.channel.leave(*this);
+  site_.channel.remove(*this);
 }
 
 void Transducer::transmit(Signal signal, Time at) {
@@ -32,22 +32,22 @@ void Transducer::transmit(Signal signal, Time at) {
   site_.channel.transmit(*this, std::move(signal), at);
 }
 
-void Transducer::call_back() {
-  busy_until_ = site_.channel.call_back(*this);
+void Transducer::cancel_pending() {
+  busy_until_ = site_.channel.cancel_pending(*this);
 }
 
-void Transducer::belong_to(const Audience& own) {
+void Transducer::set_address(const Audience& own) {
   counts_.lost[static_cast<std::size_t>(SignalLoss::range)] += out_of_range();
   own_ = own;
-  meant_before_ = site_.channel.messages_for(own_);
-  meant_near_ = 0;
+  addressed_before_ = site_.channel.messages_for(own_);
+  addressed_in_range_ = 0;
 }
 
 std::int64_t Transducer::out_of_range() const {
   // Unsigned arithmetic, as a forged snapshot may contain any counts.
-  const auto meant = static_cast<std::uint64_t>(site_.channel.messages_for(own_));
-  return static_cast<std::int64_t>(meant - static_cast<std::uint64_t>(meant_before_) -
-                                   static_cast<std::uint64_t>(meant_near_));
+  const auto sent = static_cast<std::uint64_t>(site_.channel.messages_for(own_));
+  return static_cast<std::int64_t>(sent - static_cast<std::uint64_t>(addressed_before_) -
+                                   static_cast<std::uint64_t>(addressed_in_range_));
 }
 
 Transducer::Counts Transducer::counts() const {
@@ -62,20 +62,20 @@ bool Transducer::works() const {
 
 const Transducer::Motion& Transducer::motion() const {
   // Cached, as hundreds of signals may arrive in one step.
-  const std::int64_t look = site_.channel.look();
-  if (look == motion_of_ && look >= 0) return motion_;
+  const std::int64_t serial = site_.channel.clock().serial();
+  if (serial == motion_of_ && serial >= 0) return motion_;
   const BodyMotion body = site_.body.motion();
   const Vector3d p_BS_W = body.R_WB * site_.X_BS.translation();
   motion_.p_W = body.p_WB + p_BS_W;
   motion_.drift_W = body.v_WB_W + body.w_WB_W.cross(p_BS_W);
   motion_.v_W = site_.body.velocity_at_W(site_.X_BS.translation());
-  motion_of_ = look;
+  motion_of_ = serial;
   return motion_;
 }
 
 Vector3d Transducer::p_W(Time at) const {
   const Motion& now = motion();
-  return now.p_W + now.drift_W * to_seconds(at - site_.channel.step_end());
+  return now.p_W + now.drift_W * to_seconds(at - site_.channel.clock().step_end());
 }
 
 Matrix3d Transducer::R_WS() const {
@@ -101,7 +101,7 @@ Decibels Transducer::noise_reduction(double frequency_Hz) const {
 
 ContinuousSound::ContinuousSound(Decibels source_level, double centre_Hz, double bandwidth_Hz, SoundSite site)
     : site_(std::move(site)), source_level_(source_level), center_Hz_(centre_Hz), bandwidth_Hz_(bandwidth_Hz) {
-  site_.channel.join(*this);
+  site_.channel.add(*this);
 }
 
 void ContinuousSound::set_on(bool on) {
@@ -116,7 +116,7 @@ void ContinuousSound::set_level(Decibels source_level) {
 }
 
 ContinuousSound::~ContinuousSound() {
-  site_.channel.leave(*this);
+  site_.channel.remove(*this);
 }
 
 }  // namespace sim

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "sim/acoustics/directivity.hpp"
+#include "sim/acoustics/numbered_pool.hpp"
 #include "sim/acoustics/signal.hpp"
 #include "sim/acoustics/signal_receiver.hpp"
 #include "sim/acoustics/sound_site.hpp"
@@ -38,6 +39,13 @@ struct ReceiverConfig {
   void read(ParamReader& in);
 };
 
+/// Reference to a transducer that may be removed meanwhile, whereupon its number is used again.
+struct TransducerRef {
+  int number = -1;                 ///< negative: none
+  std::uint32_t registration = 0;  ///< serial number, from 1
+  bool operator==(const TransducerRef&) const = default;
+};
+
 /// Acoustic transducer: the point at which sound enters and leaves the water.  Owned by a device; registered with the
 /// channel, which hashes and saves its state, so that the device does not visit it.
 class Transducer {
@@ -66,12 +74,12 @@ class Transducer {
   /// Transmits a signal from `at` on, which is not before now (the start of the step in act(), `Reception::ended` in
   /// receive()).  The caller must not let signals overlap.
   void transmit(Signal signal, Time at);
-  /// Cancels queued transmissions that have not started.
-  void call_back();
+  /// Cancels the transmissions that have not started.
+  void cancel_pending();
   /// Sets its address; it has none before the first call.
-  void belong_to(const Audience& own);
-  /// Whether belong_to() was called, so that messages can be addressed to it, as for a modem.
-  bool has_owner() const { return !own_.group.empty(); }
+  void set_address(const Audience& own);
+  /// Whether set_address() was called, so that messages can be sent to it, as for a modem.
+  bool has_address() const { return !own_.group.empty(); }
   /// End of all present and scheduled transmissions.
   Time busy_until() const { return busy_until_; }
   /// Whether a reception is in progress.
@@ -86,24 +94,31 @@ class Transducer {
   const std::string& full_name() const { return site_.full_name; }
   /// Group whose bodies do not block its sound; see SoundSite.
   int group() const { return site_.group; }
-  int number() const { return number_; }
+  int number() const { return ref_.number; }
+  const TransducerRef& ref() const { return ref_; }
+  /// Whether a message is for its address, or for its whole group.
+  bool is_addressee_of(const Signal& signal) const {
+    return signal.to.group == own_.group && (signal.to.address.empty() || signal.to.address == own_.address);
+  }
   const ReceiverConfig& config() const { return config_; }
   void change(const ReceiverConfig& config);
   /// Directivity index: reduction of isotropic noise.
   Decibels noise_reduction(double frequency_Hz) const;
   Counts counts() const;
   void visit_state(StateArchive& archive) {
-    archive(busy_until_, sending_until_, sending_, signals_, receiver_, counts_);
-    archive.unhashed(own_, meant_before_, meant_near_);
+    archive(busy_until_, transmitting_until_, transmission_, signals_, receiver_, counts_);
+    archive.unhashed(own_, addressed_before_, addressed_in_range_);
   }
   /// Adds its content to a hash: see SignalReceiver::add_content().
   void add_content(StateArchive& hash) {
-    hash(busy_until_, sending_until_, sending_, signals_, counts_);
+    hash(busy_until_, transmitting_until_, transmission_, signals_, counts_);
     receiver_.add_content(hash);
   }
 
  private:
   friend class AcousticChannel;
+  friend class Receptions;
+  friend class Transducers;
 
   /// Position at the end of the step, and velocity.
   struct Motion {
@@ -111,31 +126,27 @@ class Transducer {
     Vector3d drift_W;  // velocity used by p_W(Time): equals v_W except for rounding
   };
   const Motion& motion() const;
-  bool is_meant_by(const Signal& signal) const {
-    return signal.to.group == own_.group && (signal.to.address.empty() || signal.to.address == own_.address);
-  }
   /// Number of messages addressed to it that were sent out of its range.
   std::int64_t out_of_range() const;
 
   AcousticListener& listener_;
   ReceiverConfig config_;
   const SoundSite site_;
-  int number_ = -1;
-  std::uint32_t join_ = 0;  // serial number of its registration, from 1, as numbers are reused
-  Time busy_until_{0};      // of all requested transmissions
-  Time sending_until_{0};   // end of the present or last transmission
-  int sending_ = -1;        // number of its present transmission in the channel; -1: none
+  TransducerRef ref_;            // set by Transducers
+  Time busy_until_{0};           // of all requested transmissions
+  Time transmitting_until_{0};   // end of the present or last transmission
+  TransmissionId transmission_;  // the present one
   std::int64_t signals_ = 0;
   SignalReceiver receiver_;
   Counts counts_;  // without messages lost out of range
   Audience own_;
-  std::int64_t meant_before_ = 0;  // messages to its address, sent before it had this address
-  std::int64_t meant_near_ = 0;    // since then: messages in flight to it now or before, and its own
+  std::int64_t addressed_before_ = 0;    // messages to its address, sent before it had this address
+  std::int64_t addressed_in_range_ = 0;  // since then: messages in flight to it now or before, and its own
   // Cached directivity index of one frequency; NaN: none.
   mutable double index_of_Hz_ = std::numeric_limits<double>::quiet_NaN();
   mutable Decibels index_;
   mutable Motion motion_;
-  mutable std::int64_t motion_of_ = -1;  // AcousticChannel::look() at which it was computed
+  mutable std::int64_t motion_of_ = -1;  // MotionClock::serial() at which it was computed
 };
 
 /// Continuous sound source, such as an engine, a pile driver or a jammer.  Owned by a device; registered with the
@@ -156,7 +167,7 @@ class ContinuousSound {
   void visit_state(StateArchive& archive) { archive(on_, source_level_); }
 
  private:
-  friend class AcousticChannel;
+  friend class SonarEquation;
 
   const SoundSite site_;
   Decibels source_level_;

@@ -99,7 +99,7 @@ void JournalReplay::apply_vehicle(const Entry& entry) {
   parts_.entities.prescribe_vehicle_number(static_cast<int>(entry.number));
   parts_.physics.prescribe(entry.numbers);
   parts_.devices.prescribe(entry.devices);
-  if (!parts_.acoustics->prescribe(entry.transducers)) throw std::out_of_range("a transducer");
+  parts_.acoustics->prescribe(entry.transducers);
   builder_.build_vehicle(instance);
   if (!parts_.physics.as_prescribed() || !parts_.acoustics->as_prescribed() || !parts_.devices.as_prescribed())
     throw std::out_of_range("there are more numbers than entities");

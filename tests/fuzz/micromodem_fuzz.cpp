@@ -22,7 +22,7 @@ class Side final : public devices::MicromodemSide {
     return {at, at + sim::Time{1'000'000}};
   }
   Sound interrogate_beacons(sim::Time at, bool) override { return {at, at + sim::Time{5'000}}; }
-  sim::Time call_back() override { return sim::Time{0}; }
+  sim::Time cancel_pending() override { return sim::Time{0}; }
   std::int64_t utc_us(sim::Time at) const override { return 1'767'225'600'000'000 + at.count(); }
   double elapsed_s(sim::Time from, sim::Time to) const override { return sim::to_seconds(to - from); }
 };

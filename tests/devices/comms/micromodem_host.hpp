@@ -25,7 +25,7 @@ class MicromodemRecorder final : public devices::MicromodemSide {
     beacons_on_the_second.push_back(on_the_second);
     return {at, at + sim::from_seconds(0.005)};
   }
-  sim::Time call_back() override {
+  sim::Time cancel_pending() override {
     ++called_back;
     return sim::Time{0};
   }

@@ -65,8 +65,8 @@ TEST(AcousticChannel, CountsMessagesForThoseTheyAreFor) {
   TestWorld test(sea("{range_max_m: 1000}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[150, 0, -10]") +
                                                 vehicle("c", "[0, 150, -10]") + vehicle("d", "[9000, 0, -10]") +
                                                 vehicle("other", "[0, -150, -10]")));
-  for (const char* name : {"a", "b", "c", "d"}) phone(test, name).transducer().belong_to({"modems", name});
-  phone(test, "other").transducer().belong_to({"others", "b"});
+  for (const char* name : {"a", "b", "c", "d"}) phone(test, name).transducer().set_address({"modems", name});
+  phone(test, "other").transducer().set_address({"others", "b"});
   Signal to_b = message(), to_d = message(), to_all = message();
   to_b.to = {"modems", "b"}, to_d.to = {"modems", "d"}, to_all.to = {"modems", ""};
   for (int i = 0; i < 3; ++i) phone(test, "a").transducer().transmit(i == 0 ? to_b : i == 1 ? to_d : to_all, i * 4s);
@@ -81,7 +81,7 @@ TEST(AcousticChannel, CountsMessagesForThoseTheyAreFor) {
   EXPECT_EQ(lost(test, "d", SignalLoss::range), 2);
   for (const char* name : {"a", "b", "c", "other"}) EXPECT_EQ(lost(test, name, SignalLoss::range), 0) << name;
   // With another name it misses what is for that one, and keeps what it has missed.
-  phone(test, "d").transducer().belong_to({"modems", "e"});
+  phone(test, "d").transducer().set_address({"modems", "e"});
   phone(test, "a").transducer().transmit(to_d, 14s);
   test.run_for(5);
   EXPECT_EQ(lost(test, "d", SignalLoss::range), 2);
@@ -90,7 +90,7 @@ TEST(AcousticChannel, CountsMessagesForThoseTheyAreFor) {
 TEST(AcousticChannel, ForgetsTheMessagesForThoseWhoHaveLeft) {
   TestWorld test(
       sea("{}", vehicle("a", "[0, 0, -10]") + vehicle("b", "[150, 0, -10]") + vehicle("c", "[0, 150, -10]")));
-  for (const char* name : {"b", "c"}) phone(test, name).transducer().belong_to({"modems", "x"});
+  for (const char* name : {"b", "c"}) phone(test, name).transducer().set_address({"modems", "x"});
   Signal to_x = message();
   to_x.to = {"modems", "x"};
   phone(test, "a").transducer().transmit(to_x, 0ms);
@@ -110,7 +110,7 @@ TEST(AcousticChannel, WhatHasNotBegunCanBeCalledBack) {
   phone(test, "a").transducer().transmit(message(), 0ms);
   phone(test, "a").transducer().transmit(message(), 4s);
   test.run_for(1);
-  phone(test, "a").transducer().call_back();
+  phone(test, "a").transducer().cancel_pending();
   EXPECT_EQ(phone(test, "a").transducer().busy_until(), 3200ms);
   test.run_for(8);
   EXPECT_EQ(phone(test, "b").all().size(), 1u);
