@@ -3,14 +3,11 @@
 
 #include <signal.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <sstream>
 #include <stdexcept>
 #include <thread>
 
@@ -41,10 +38,7 @@ pid_t start_outside(const std::vector<std::string>& arguments, const std::string
 }  // namespace
 
 void require_program(const std::string& name, const std::string& package) {
-  const char* const path = std::getenv("PATH");
-  std::istringstream folders(path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin");
-  for (std::string folder; std::getline(folders, folder, ':');)
-    if (access((folder.empty() ? name : folder + "/" + name).c_str(), X_OK) == 0) return;
+  if (is_program(name)) return;
   throw std::runtime_error("there is no program '" + name + "' in PATH; Debian has it in the package " + package);
 }
 

@@ -8,6 +8,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+#include <system_error>
 
 extern char** environ;
 
@@ -53,6 +57,20 @@ void become(const ChildProgram& program, char* const* arguments, char* const* en
 }
 
 }  // namespace
+
+bool is_program(const std::string& name) {
+  const auto is_executable = [](const std::string& path) {
+    std::error_code error;
+    return std::filesystem::is_regular_file(path, error) && access(path.c_str(), X_OK) == 0;
+  };
+  if (name.find('/') != std::string::npos) return is_executable(name);
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "/bin:/usr/bin");  // without PATH as execvp() does
+  for (std::string folder; std::getline(folders, folder, ':');)
+    // An empty entry of PATH is the working folder (POSIX).
+    if (is_executable((folder.empty() ? "." : folder) + "/" + name)) return true;
+  return false;
+}
 
 std::vector<std::string> own_environment() {
   std::vector<std::string> environment;

@@ -21,6 +21,9 @@ struct ChildProgram {
 /// SIGTERM when the thread that starts it ends for any reason.  Returns 0, or the error as in errno.
 int start_child(const ChildProgram& program, pid_t& pid);
 
+/// Returns whether there is an executable file of this name; without a slash, in a folder of PATH.
+bool is_program(const std::string& name);
+
 /// Returns the environment of this process.
 std::vector<std::string> own_environment();
 

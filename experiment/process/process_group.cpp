@@ -8,10 +8,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <sstream>
 #include <stdexcept>
 #include <thread>
 
@@ -56,18 +54,7 @@ std::string describe_status(int status) {
 }  // namespace
 
 bool can_be_started(const std::string& program) {
-  const auto is_program = [](const std::string& path) {
-    std::error_code error;
-    return fs::is_regular_file(path, error) && access(path.c_str(), X_OK) == 0;
-  };
-  const std::string found = find_program(program);
-  if (found.find('/') != std::string::npos) return is_program(found);
-  const char* path = std::getenv("PATH");
-  std::istringstream directories(path != nullptr ? path : "");
-  for (std::string directory; std::getline(directories, directory, ':');)
-    // An empty entry of PATH is the working folder (POSIX).
-    if (is_program((directory.empty() ? "." : directory) + "/" + found)) return true;
-  return false;
+  return is_program(find_program(program));
 }
 
 ProcessGroup::~ProcessGroup() {
