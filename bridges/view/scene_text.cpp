@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "bridges/base/json_text.hpp"
 #include "bridges/view/scene_assets.hpp"
 #include "bridges/view/scene_currents.hpp"
 #include "sim/device/device.hpp"
@@ -292,7 +293,7 @@ std::string scene_text(const sim::World& world, int revision, SceneAssets& asset
   scene["water"] = writer.water();
   scene["zones"] = writer.zones();
   // A name that is not UTF-8 must not prevent the scene.
-  return scene.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_text(scene);
 }
 
 }  // namespace bridges

@@ -12,6 +12,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "bridges/base/json_text.hpp"
 #include "experiment/replay/replayed_world.hpp"
 #include "experiment/results/run_record.hpp"
 #include "experiment/results/verdict_json.hpp"
@@ -317,7 +318,7 @@ std::string LogScore::to_json() const {
   json["rules"] = nlohmann::ordered_json::array();
   for (const RuleVerdict& verdict : verdicts) json["rules"].push_back(json_of(verdict));
   json["notes"] = notes;
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return bridges::json_text(json, 2) + "\n";
 }
 
 }  // namespace experiment

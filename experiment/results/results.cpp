@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "bridges/base/json_text.hpp"
 #include "experiment/files/gnuplot.hpp"
 #include "experiment/results/audit_text.hpp"
 #include "experiment/results/results_world.hpp"
@@ -230,7 +231,7 @@ std::string Summary::to_json() const {
   if (!snapshot.empty()) json["snapshot"] = snapshot;
   if (!snapshot.empty()) json["metrics_from_s"] = from_s;
   // The name of a client may contain any bytes: invalid UTF-8 must not prevent the summary.
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return bridges::json_text(json, 2) + "\n";
 }
 
 std::string Summary::to_text() const {

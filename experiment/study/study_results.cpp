@@ -9,6 +9,7 @@
 #include <numeric>
 #include <set>
 
+#include "bridges/base/json_text.hpp"
 #include "experiment/files/csv.hpp"
 #include "experiment/results/verdict_json.hpp"
 #include "experiment/run/version.hpp"
@@ -328,7 +329,7 @@ std::string StudyResults::to_json(int exit_code) const {
   if (const auto flag = as_flag(judgement())) json["passed"] = *flag && exit_code == 0;
   json["exit_code"] = exit_code;
   json["shoal"] = short_version();
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return bridges::json_text(json, 2) + "\n";
 }
 
 }  // namespace experiment

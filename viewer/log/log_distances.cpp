@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "viewer/page_data/view_json.hpp"
+#include "bridges/base/json_text.hpp"
 
 namespace viewer {
 
@@ -95,11 +95,11 @@ std::string LogDistances::text(const std::optional<LogDifference>& difference) c
       distances.push_back(std::isfinite(d) ? Json(std::round(d * per_m) / per_m) : Json(nullptr));
     vehicles.push_back({{"name", vehicle.name}, {"distance_m", std::move(distances)}});
   }
-  return json_text({{"op", "distances"},
-                    {"t_us", t_us_},
-                    {"differs_us", difference ? Json(difference->time_us) : Json(nullptr)},
-                    {"left_out", left_out_},
-                    {"vehicles", std::move(vehicles)}});
+  return bridges::json_text({{"op", "distances"},
+                             {"t_us", t_us_},
+                             {"differs_us", difference ? Json(difference->time_us) : Json(nullptr)},
+                             {"left_out", left_out_},
+                             {"vehicles", std::move(vehicles)}});
 }
 
 }  // namespace viewer

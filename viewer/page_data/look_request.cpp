@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "viewer/page_data/view_json.hpp"
+#include "bridges/base/json_text.hpp"
 
 namespace viewer {
 
@@ -18,7 +18,7 @@ constexpr std::size_t longest_value = 40;
 
 [[noreturn]] void refuse(const char* key, const char* rule, const Json& value) {
   throw std::runtime_error(std::string("look: '") + key + "' must be " + rule + ", got " +
-                           json_text(value).substr(0, longest_value));
+                           bridges::json_text(value).substr(0, longest_value));
 }
 
 }  // namespace

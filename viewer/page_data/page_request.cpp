@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "bridges/base/json_text.hpp"
+
 namespace viewer {
 
 namespace {
@@ -96,7 +98,7 @@ std::string request_id(std::string_view text) {
   if (!message.is_object()) return "null";
   const auto id = message.find("id");
   if (id == message.end() || !(id->is_number() || id->is_string())) return "null";
-  const std::string json = id->dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string json = bridges::json_text(*id);
   return json.size() <= longest_id ? json : "null";
 }
 

@@ -4,11 +4,11 @@
 #include <map>
 #include <set>
 
+#include "bridges/base/json_text.hpp"
 #include "bridges/control/spawned_vehicles.hpp"
 #include "experiment/drive/drive_mapping.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/script/action_registry.hpp"
-#include "viewer/page_data/view_json.hpp"
 #include "viewer/server/page_drive.hpp"
 
 namespace viewer {
@@ -75,13 +75,13 @@ std::string forms_text(const sim::World& world, const experiment::DriveProfile& 
   for (const sim::EventConfig& event : world.config().events) events.push_back(event.name);
   for (const auto& [name, object] : world.objects()) objects.push_back(name);
   for (const auto& actor : world.config().actors) actors.push_back(actor.name);
-  return json_text({{"op", "forms"},
-                    {"actions", actions_json()},
-                    {"types", std::move(types)},
-                    {"events", std::move(events)},
-                    {"objects", std::move(objects)},
-                    {"actors", std::move(actors)},
-                    {"drives", std::move(drives)}});
+  return bridges::json_text({{"op", "forms"},
+                             {"actions", actions_json()},
+                             {"types", std::move(types)},
+                             {"events", std::move(events)},
+                             {"objects", std::move(objects)},
+                             {"actors", std::move(actors)},
+                             {"drives", std::move(drives)}});
 }
 
 }  // namespace viewer
