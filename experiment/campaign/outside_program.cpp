@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "bridges/base/child_program.hpp"
 #include "experiment/files/scratch_directory.hpp"
-#include "experiment/process/child_program.hpp"
 #include "experiment/process/signals.hpp"
 #include "experiment/results/run_record.hpp"
 
@@ -30,7 +30,8 @@ int exit_code_of(int status) {
 /// Starts a program from PATH.  Throws std::runtime_error.
 pid_t start_outside(const std::vector<std::string>& arguments, const std::string& log) {
   pid_t pid = 0;
-  if (const int error = start_child({arguments.front(), arguments, own_environment(), log}, pid); error != 0)
+  if (const int error = bridges::start_child({arguments.front(), arguments, bridges::own_environment(), log}, pid);
+      error != 0)
     throw std::runtime_error("cannot start '" + arguments.front() + "': " + std::strerror(error));
   return pid;
 }
@@ -38,7 +39,7 @@ pid_t start_outside(const std::vector<std::string>& arguments, const std::string
 }  // namespace
 
 void require_program(const std::string& name, const std::string& package) {
-  if (is_program(name)) return;
+  if (bridges::is_program(name)) return;
   throw std::runtime_error("there is no program '" + name + "' in PATH; Debian has it in the package " + package);
 }
 

@@ -13,8 +13,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "bridges/base/child_program.hpp"
 #include "bridges/signing/run_key.hpp"
-#include "experiment/process/child_program.hpp"
 #include "sim/config/shipped_files.hpp"
 
 namespace experiment {
@@ -36,7 +36,7 @@ std::string find_program(const std::string& name) {
 
 std::vector<std::string> environment_with(const std::string& lcm_url, const std::string& run_key) {
   const std::string key_entry = std::string(bridges::run_key_variable) + "=";
-  std::vector<std::string> environment = own_environment();
+  std::vector<std::string> environment = bridges::own_environment();
   std::erase_if(environment, [&](const std::string& entry) {
     return entry.starts_with("LCM_DEFAULT_URL=") || entry.starts_with(key_entry);
   });
@@ -54,7 +54,7 @@ std::string describe_status(int status) {
 }  // namespace
 
 bool can_be_started(const std::string& program) {
-  return is_program(find_program(program));
+  return bridges::is_program(find_program(program));
 }
 
 ProcessGroup::~ProcessGroup() {
@@ -72,7 +72,7 @@ void ProcessGroup::start(const sim::ProcessConfig& config, const std::string& lc
       argument.replace(at, 9, lcm_url);
   const std::string log = log_directory.empty() ? "" : log_directory + "/" + config.name + ".log";
   pid_t pid = 0;
-  const int error = start_child({arguments[0], arguments, environment_with(lcm_url, run_key_), log}, pid);
+  const int error = bridges::start_child({arguments[0], arguments, environment_with(lcm_url, run_key_), log}, pid);
   if (error != 0)
     throw std::runtime_error("process '" + config.name + "': cannot start '" + arguments[0] +
                              "': " + std::strerror(error));

@@ -12,7 +12,7 @@
 #include <fstream>
 #include <utility>
 
-#include "experiment/process/child_program.hpp"
+#include "bridges/base/child_program.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace viewer {
@@ -46,7 +46,7 @@ std::vector<std::string> arguments_of(const FilmFormat& format, const std::vecto
 }  // namespace
 
 bool has_ffmpeg() {
-  return experiment::is_program("ffmpeg");
+  return bridges::is_program("ffmpeg");
 }
 
 EncoderProgram::EncoderProgram(std::string file, const FilmFormat& format, const std::vector<std::string>& codec)
@@ -56,9 +56,9 @@ EncoderProgram::EncoderProgram(std::string file, const FilmFormat& format, const
   const bridges::FileDescriptor read_end(ends[0]);
   input_ = bridges::FileDescriptor(ends[1]);
   fcntl(ends[1], F_SETPIPE_SZ, 1 << 20);  // fewer switches between the programs
-  experiment::ChildProgram program{"ffmpeg", arguments_of(format, codec, file_.part_name()),
-                                   experiment::own_environment(), log_.part_name(), read_end.number()};
-  const int error = experiment::start_child(program, pid_);
+  bridges::ChildProgram program{"ffmpeg", arguments_of(format, codec, file_.part_name()), bridges::own_environment(),
+                                log_.part_name(), read_end.number()};
+  const int error = bridges::start_child(program, pid_);
   if (error != 0) throw FilmError(file_.path() + ": ffmpeg cannot be started: " + std::strerror(error));
 }
 

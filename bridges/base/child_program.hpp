@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace experiment {
+namespace bridges {
 
 /// Executable, arguments and environment of a program to start.
 struct ChildProgram {
@@ -15,10 +15,11 @@ struct ChildProgram {
   std::vector<std::string> environment;  ///< `NAME=value`
   std::string log;                       ///< file for its output; empty: our output
   int input = -1;                        ///< descriptor of its standard input; -1: empty
+  bool stays = false;                    ///< in a session of its own, without our files, and not ended with us
 };
 
-/// Starts a program in its own process group, with default signal handling.  It receives
-/// SIGTERM when the thread that starts it ends for any reason.  Returns 0, or the error as in errno.
+/// Starts a program in its own process group, with default signal handling.  Unless it `stays` it receives SIGTERM when
+/// the thread that starts it ends for any reason.  Returns 0, or the error as in errno.
 int start_child(const ChildProgram& program, pid_t& pid);
 
 /// Returns whether there is an executable file of this name; without a slash, in a folder of PATH.
@@ -27,4 +28,4 @@ bool is_program(const std::string& name);
 /// Returns the environment of this process.
 std::vector<std::string> own_environment();
 
-}  // namespace experiment
+}  // namespace bridges

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiment/process/child_program.hpp"
+#include "bridges/base/child_program.hpp"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -15,7 +15,7 @@
 
 extern char** environ;
 
-namespace experiment {
+namespace bridges {
 
 namespace {
 
@@ -44,8 +44,13 @@ void take_usual_signals() {
 /// Runs in the child, where nothing may be allocated, because other threads may have held locks.  Returns on failure.
 void become(const ChildProgram& program, char* const* arguments, char* const* environment, pid_t parent) {
   take_usual_signals();  // first: the parent's handler would only note a SIGTERM that comes before the program runs
-  if (setpgid(0, 0) != 0 || prctl(PR_SET_PDEATHSIG, SIGTERM) != 0) return;
-  if (getppid() != parent) _exit(128 + SIGTERM);  // it ended before it could be monitored
+  if (program.stays) {
+    if (setsid() < 0) return;
+    close_range(STDERR_FILENO + 1, ~0u, CLOSE_RANGE_CLOEXEC);  // Linux 5.11; ours close at exec anyway
+  } else {
+    if (setpgid(0, 0) != 0 || prctl(PR_SET_PDEATHSIG, SIGTERM) != 0) return;
+    if (getppid() != parent) _exit(128 + SIGTERM);  // it ended before it could be monitored
+  }
   if (program.input >= 0 ? dup2(program.input, STDIN_FILENO) < 0 : !open_as(STDIN_FILENO, "/dev/null", O_RDONLY))
     return;
   // A stranger's folder may have a link or a FIFO in place of the log.
@@ -111,4 +116,4 @@ int start_child(const ChildProgram& program, pid_t& pid) {
   return error;
 }
 
-}  // namespace experiment
+}  // namespace bridges
