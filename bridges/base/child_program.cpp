@@ -70,7 +70,7 @@ bool is_program(const std::string& name) {
   };
   if (name.find('/') != std::string::npos) return is_executable(name);
   const char* const path = std::getenv("PATH");
-  std::istringstream folders(path != nullptr ? path : "/bin:/usr/bin");  // without PATH as execvp() does
+  std::istringstream folders(path != nullptr ? path : "/bin:/usr/bin");  // without PATH as exec does
   for (std::string folder; std::getline(folders, folder, ':');)
     // An empty entry of PATH is the working folder (POSIX).
     if (is_executable((folder.empty() ? "." : folder) + "/" + name)) return true;

@@ -15,7 +15,7 @@ struct ChildProgram {
   std::vector<std::string> environment;  ///< `NAME=value`
   std::string log;                       ///< file for its output; empty: our output
   int input = -1;                        ///< descriptor of its standard input; -1: empty
-  bool stays = false;                    ///< in a session of its own, without our files, and not ended with us
+  bool stays = false;                    ///< in its own session, without our files, and not ended with us
 };
 
 /// Starts a program in its own process group, with default signal handling.  Unless it `stays` it receives SIGTERM when
