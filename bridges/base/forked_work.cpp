@@ -57,7 +57,13 @@ ForkedWork run_forked(const std::function<int(int to)>& work, std::optional<Cloc
   FileDescriptor to(ends[1]);
   const pid_t child = fork();
   if (child < 0) throw std::system_error(errno, std::generic_category());
-  if (child == 0) _exit(work(ends[1]));
+  if (child == 0) {
+    try {
+      _exit(work(ends[1]));
+    } catch (...) {
+      _exit(1);
+    }
+  }
   // The end for writing must be closed here, or reading would never see the end of the child's output.
   { const FileDescriptor closed = std::move(to); }
   ForkedWork result{read_until(from.number(), deadline)};

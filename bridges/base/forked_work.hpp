@@ -15,9 +15,9 @@ struct ForkedWork {
 };
 
 /// Runs `work` in a copy of this process, where it may crash, and waits for it.  `work` writes its output to the
-/// descriptor that it is given; what it returns is the exit code.  The child ends without destructors, handlers and
-/// flushing, which belong to this process.  Throws std::system_error when no child can be started: EMFILE or ENFILE
-/// when there is no descriptor.
+/// descriptor that it is given; what it returns is the exit code, 1 if it throws.  The child ends without destructors,
+/// handlers and flushing, which belong to this process.  Throws std::system_error when no child can be started: EMFILE
+/// or ENFILE when there is no descriptor.
 ForkedWork run_forked(const std::function<int(int to)>& work,
                       std::optional<std::chrono::steady_clock::time_point> deadline = std::nullopt);
 

@@ -35,11 +35,7 @@ int be_child(const std::function<std::string()>& work, const ChildLimits& limits
 #ifndef __SANITIZE_ADDRESS__
   set_limit(RLIMIT_AS, limits.memory_bytes);
 #endif
-  try {
-    return bridges::write_all(to, work()) ? 0 : 1;
-  } catch (...) {
-    return 1;
-  }
+  return bridges::write_all(to, work()) ? 0 : 1;
 }
 
 }  // namespace
