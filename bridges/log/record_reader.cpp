@@ -7,7 +7,7 @@
 #include "bridges/log/event_log.hpp"
 #include "bridges/log/record_file.hpp"
 #include "bridges/mcap/mcap_reader.hpp"
-#include "bridges/ros2/cdr_transcoder.hpp"
+#include "bridges/ros2/cdr.hpp"
 #include "shoal/message_schema.hpp"
 
 namespace bridges {

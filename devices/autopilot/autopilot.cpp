@@ -18,8 +18,8 @@
 #include "shoal/waypoints_command_t.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/vehicle/mounted_device.hpp"
-#include "sim/world/plan_check.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world/world_checks.hpp"
 
 namespace devices {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/actions/target_choice.hpp"
+#include "sim/actions/random_choice.hpp"
 #include "sim/director/action_run.hpp"
 #include "sim/director/stage.hpp"
 #include "sim/script/action_registry.hpp"

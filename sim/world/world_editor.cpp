@@ -10,9 +10,9 @@
 #include "sim/vehicle/limit_check.hpp"
 #include "sim/vehicle/mounted_device.hpp"
 #include "sim/world/bottom_check.hpp"
-#include "sim/world/plan_check.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world/world_builder.hpp"
+#include "sim/world/world_checks.hpp"
 #include "sim/world/world_journal.hpp"
 #include "sim/world/world_parts.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/plan_check.hpp"
+#include "sim/world/world_checks.hpp"
 
 #include <gmock/gmock.h>
 

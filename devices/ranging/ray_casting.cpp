@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "devices/ranging/beam_pattern.hpp"
+#include "devices/ranging/ray_casting.hpp"
 
 namespace devices {
 

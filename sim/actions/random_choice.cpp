@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/actions/target_choice.hpp"
+#include "sim/actions/random_choice.hpp"
 
 #include "sim/script/action.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiment/results/results_lock.hpp"
+#include "experiment/results/results_folder.hpp"
 
 #include <fcntl.h>
 
