@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "devices/drive/wheel_geometry.hpp"
-#include "sim/base/linear_algebra.hpp"
+#include "sim/base/math.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world.hpp"

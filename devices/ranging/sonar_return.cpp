@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "devices/ranging/ray_filter.hpp"
-#include "sim/medium/absorption.hpp"
+#include "sim/medium/sea_water.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {

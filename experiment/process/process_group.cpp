@@ -17,7 +17,7 @@
 
 #include "bridges/signing/run_key.hpp"
 #include "experiment/process/child_program.hpp"
-#include "sim/config/shipped_files.hpp"
+#include "sim/config/file_access.hpp"
 
 namespace experiment {
 

@@ -12,8 +12,8 @@
 #include "experiment/study/study_rules.hpp"
 #include "experiment/study/study_seeds.hpp"
 #include "sim/config/common_keys.hpp"
+#include "sim/config/config_node.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/yaml_writer.hpp"
 #include "sim/world_file/rule_list.hpp"
 
 namespace experiment {

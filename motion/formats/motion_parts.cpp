@@ -4,7 +4,7 @@
 #include <cctype>
 
 #include "sim/config/message_text.hpp"
-#include "sim/motion/joint_name.hpp"
+#include "sim/motion/motion.hpp"
 
 namespace motion {
 

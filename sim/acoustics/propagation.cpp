@@ -9,7 +9,7 @@
 
 #include "sim/acoustics/echoes.hpp"
 #include "sim/acoustics/rays/ray_tables.hpp"
-#include "sim/medium/absorption.hpp"
+#include "sim/medium/sea_water.hpp"
 
 namespace sim {
 

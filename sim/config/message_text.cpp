@@ -9,7 +9,6 @@
 #include <numeric>
 #include <utility>
 
-#include "sim/config/other_names.hpp"
 #include "sim/config/yaml_writer.hpp"
 
 namespace sim {

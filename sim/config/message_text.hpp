@@ -38,7 +38,10 @@ std::string closest_name(std::string_view misspelt, const std::vector<std::strin
 
 /// `; did you mean 'NAME'?` for the name that a misspelt one most likely meant; empty when none is close.  Names that
 /// end with a unit are found without it and with another one: `speed_kmh` gives `; did you mean 'speed_mps', in m/s?`.
-/// A word of other simulators gives that of Shoal (other_names.hpp).
+/// A word of other simulators gives that of Shoal (other_names.cpp).
 std::string did_you_mean(std::string_view misspelt, const std::vector<std::string>& names);
+
+/// The name in Shoal of what other simulators name differently, such as `hinge` for `revolute`; empty: none.
+std::string_view synonym_of(std::string_view word);
 
 }  // namespace sim

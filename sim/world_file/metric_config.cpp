@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <set>
 
-#include "sim/config/merged_keys.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/config/param_info.hpp"
 #include "sim/world_file/rule_list.hpp"
 #include "sim/world_file/world_config.hpp"
 

@@ -6,8 +6,8 @@
 #include <iostream>
 #include <limits>
 
+#include "sim/config/config_node.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/yaml_writer.hpp"
 #include "sim/program/program_args.hpp"
 #include "tools/command_line/checks.hpp"
 #include "tools/command_line/parse.hpp"

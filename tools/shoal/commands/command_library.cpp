@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "bridges/base/file_descriptor.hpp"
-#include "sim/config/shipped_files.hpp"
+#include "sim/config/file_access.hpp"
 
 extern char** environ;
 

@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "experiment/log_import/mrclam_record.hpp"
+#include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/shipped_files.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/mesh/mesh_import.hpp"
 #include "tools/shoal/options/output_file.hpp"

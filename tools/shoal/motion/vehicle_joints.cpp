@@ -7,7 +7,7 @@
 #include "devices/motion/servo_bank.hpp"
 #include "devices/signals/led.hpp"
 #include "experiment/world_files/world_by_name.hpp"
-#include "sim/config/shipped_files.hpp"
+#include "sim/config/file_access.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
 
 namespace tools {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "sim/config/yaml_writer.hpp"
+#include "sim/config/config_node.hpp"
 #include "sim/program/find_program.hpp"
 
 namespace tools {

@@ -8,7 +8,7 @@
 
 #include "shoal/message_schema.hpp"
 #include "sim/base/text_layout.hpp"
-#include "sim/config/param_table.hpp"
+#include "sim/config/param_info.hpp"
 #include "sim/program/program_declaration.hpp"
 #include "sim/random/noise.hpp"
 #include "sim/world_file/metric_registry.hpp"

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "sim/config/shipped_files.hpp"
+#include "sim/config/file_access.hpp"
 
 namespace tools {
 

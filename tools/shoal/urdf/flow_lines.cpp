@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "sim/base/number.hpp"
+#include "sim/config/config_node.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/yaml_writer.hpp"
 
 namespace tools {
 

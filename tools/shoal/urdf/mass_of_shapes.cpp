@@ -7,7 +7,7 @@
 #include <map>
 #include <numbers>
 
-#include "sim/base/linear_algebra.hpp"
+#include "sim/base/math.hpp"
 #include "tools/shoal/urdf/convex_hull.hpp"
 
 namespace tools {
