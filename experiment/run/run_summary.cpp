@@ -12,7 +12,7 @@
 #include "sim/acoustics/channel.hpp"
 #include "sim/base/log.hpp"
 #include "sim/base/thread_pool.hpp"
-#include "sim/world/end_check.hpp"
+#include "sim/world/world_checks.hpp"
 #include "sim/world/world_state.hpp"
 
 namespace experiment {

@@ -18,7 +18,7 @@
 #include "sim/config/message_text.hpp"
 #include "sim/random/random.hpp"
 #include "sim/world_file/file_kind.hpp"
-#include "sim/world_file/rule_list.hpp"
+#include "sim/world_file/metric_config.hpp"
 
 namespace experiment {
 

@@ -14,7 +14,7 @@
 #include "sim/config/common_keys.hpp"
 #include "sim/config/config_node.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/world_file/rule_list.hpp"
+#include "sim/world_file/metric_config.hpp"
 
 namespace experiment {
 

@@ -4,7 +4,6 @@
 #include "sim/director/stage.hpp"
 #include "sim/script/action_registry.hpp"
 #include "sim/vehicle/entities.hpp"
-#include "sim/vehicle/world_error.hpp"
 
 namespace sim {
 

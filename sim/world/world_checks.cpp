@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/world/world_checks.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,9 +11,9 @@
 #include "sim/vehicle/mounted_device.hpp"
 #include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world_file/vehicle_config.hpp"
 
 namespace sim {
-
 namespace {
 
 constexpr double any_height_m = 12000;  // more than any ocean has
@@ -75,6 +77,66 @@ void warn_of_plans(const World& world, const Vehicle& vehicle, Warnings& warning
       break;
     }
   }
+}
+
+namespace {
+
+constexpr double deepest_m = 12000;  // deeper than any ocean
+
+bool in_water(const World& world, const Vehicle& vehicle, const VehicleConfig& config) {
+  return std::any_of(config.bodies.begin(), config.bodies.end(), [&](const BodyConfig& body) {
+    return body.has_coefficients() || world.medium().in_water(vehicle.body(body.name).X_WB().translation());
+  });
+}
+
+bool looks_for_bottom(const Vehicle& vehicle) {
+  return std::any_of(vehicle.devices().begin(), vehicle.devices().end(), [](const MountedDevice* device) {
+    return device->casts_rays() || (device->senses() && device->sensor()->needs_bottom());
+  });
+}
+
+bool over_nothing(const World& world, const Vehicle& vehicle) {
+  if (!looks_for_bottom(vehicle) || !in_water(world, vehicle, vehicle.config())) return false;
+  RayFilter others;
+  others.exclude_group = vehicle.group();
+  return !world.scene().cast(vehicle.X_WV().translation(), -Vector3d::UnitZ(), deepest_m, others);
+}
+
+std::vector<std::string> lines_about(const std::vector<const Vehicle*>& over_nothing) {
+  if (over_nothing.empty()) return {};
+  const std::size_t more = over_nothing.size() - 1;
+  const std::string others = more == 0 ? "" : " (nor below " + std::to_string(more) + " more)";
+  return {"there is no bottom below vehicle '" + over_nothing[0]->name() + "'" + others +
+          ": downward-looking sensors there detect nothing"};
+}
+
+}  // namespace
+
+std::vector<std::string> bottom_warnings(const World& world) {
+  std::vector<const Vehicle*> found;
+  if (world.medium().has_water())
+    for (const auto& vehicle : world.vehicles())
+      if (over_nothing(world, *vehicle)) found.push_back(vehicle.get());
+  return lines_about(found);
+}
+
+std::vector<std::string> bottom_warnings(const World& world, const Vehicle& vehicle) {
+  if (!world.medium().has_water() || !over_nothing(world, vehicle)) return {};
+  return lines_about({&vehicle});
+}
+
+std::vector<std::string> end_warnings(const World& world, const std::function<bool(const std::string&)>& is_awaited) {
+  constexpr Time max_search = std::chrono::minutes(1);  // a first fix or answer may take some time
+  std::vector<std::string> lines = world.warnings().kept();
+  for (const auto& vehicle : world.vehicles())
+    for (const MountedDevice* device : vehicle->devices()) {
+      const auto lack = device->senses() ? device->lack() : std::nullopt;
+      if (!lack || lack->span < max_search) continue;
+      if (lack->what.ends_with(" under water") && !is_awaited(device->report_channel())) continue;
+      lines.push_back(
+          fmt::format("device '{}': no {} in {:.6g} s", device->full_name(), lack->what, to_seconds(lack->span)));
+    }
+  return lines;
 }
 
 }  // namespace sim

@@ -7,9 +7,8 @@
 #include <stdexcept>
 
 #include "sim/config/diagnostics.hpp"
-#include "sim/vehicle/limit_check.hpp"
+#include "sim/vehicle/entities.hpp"
 #include "sim/vehicle/mounted_device.hpp"
-#include "sim/world/bottom_check.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world/world_builder.hpp"
 #include "sim/world/world_checks.hpp"

@@ -7,7 +7,9 @@
 
 #include "sim/random/random.hpp"
 #include "sim/script/action.hpp"
+#include "tests/devices/world_fixture.hpp"
 #include "tests/sim/config/read_yaml.hpp"
+#include "tests/sim/director/event_worlds.hpp"
 
 namespace {
 
@@ -53,6 +55,28 @@ TEST(TargetChoice, DrawsEachOfSeveralAndNothingForOne) {
   target.names = {"ball"};
   EXPECT_EQ(target.choose(fresh), "ball");
   EXPECT_EQ(fresh.uniform(), untouched.uniform());
+}
+
+using namespace event_worlds;
+
+TEST(Events, ChooseAtRandomByTheirOwnNameWhateverElseHappens) {
+  const std::string a =
+      "  - {name: a, every: 0.1, do: [{move: {name: ball, places: [[1, 0, 5], [2, 0, 5], [3, 0, 5]], random_yaw: "
+      "true}}]}\n";
+  const auto places = [&](const std::string& others) {
+    test::TestWorld test(event_world(a + others));
+    std::vector<double> xs;
+    for (int i = 0; i < 30; ++i) {
+      test.run_for(0.1);
+      xs.push_back(test.world.find_object("ball")->base().X_WB().translation().x());
+    }
+    return xs;
+  };
+  const auto alone = places("");
+  EXPECT_EQ(alone, places("  - {name: b, every: 0.01, do: [{log: b}], probability: 0.5}\n"));
+  EXPECT_THAT(alone, testing::Contains(1));
+  EXPECT_THAT(alone, testing::Contains(2));
+  EXPECT_THAT(alone, testing::Contains(3));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/acoustics/ray_paths.hpp"
+#include "sim/acoustics/propagation.hpp"
 
 #include <gtest/gtest.h>
 

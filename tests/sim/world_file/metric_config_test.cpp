@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world_file/rule_list.hpp"
+#include "sim/world_file/metric_config.hpp"
 
 #include <gmock/gmock.h>
 
