@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <iosfwd>
 #include <string>
+
+#include "bridges/bus/network_check.hpp"
 
 namespace bridges {
 
@@ -9,5 +12,17 @@ namespace bridges {
 /// for tcpq, whose server may be reachable from anywhere.  Returns true when in doubt.  `resolved_url`: result of
 /// resolve_lcm_url().  Programs that forward messages from one bus to another are not detected.
 bool leaves_machine(const std::string& resolved_url);
+
+/// Numbers of sockets on a port that other machines can reach, from a table such as /proc/net/udp or /proc/net/tcp.
+struct OpenSockets {
+  int everywhere = 0;  ///< bound to 0.0.0.0
+  int elsewhere = 0;   ///< bound to another address that is neither loopback nor multicast
+};
+/// Counts the sockets of a port in a table.  `listening_only`: only TCP sockets that wait for connections.
+OpenSockets open_sockets(std::istream& table, int port, bool listening_only);
+
+/// Checks whether other machines can reach the bus of this URL, from its ttl, the addresses to which sockets on its
+/// port are bound, and its server.  For `shoal doctor`.
+Finding check_reach(const std::string& resolved_url);
 
 }  // namespace bridges

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <vector>
 
-#include "bridges/ros2/cdr_writer.hpp"
+#include "bridges/ros2/cdr.hpp"
 #include "bridges/ros2/ros2_schema.hpp"
 #include "bridges/web/client_json.hpp"
 #include "bridges/web/web_error.hpp"

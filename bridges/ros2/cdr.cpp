@@ -6,8 +6,6 @@
 #include <cstring>
 #include <iterator>
 
-#include "bridges/ros2/cdr_writer.hpp"
-
 namespace bridges::ros2 {
 namespace {
 

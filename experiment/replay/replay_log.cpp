@@ -16,8 +16,8 @@
 
 #include "bridges/control/run_audit.hpp"
 #include "bridges/log/event_log.hpp"
+#include "bridges/log/record_reader.hpp"
 #include "bridges/log/recording_bus.hpp"
-#include "bridges/log/run_info.hpp"
 #include "bridges/log/run_journal.hpp"
 #include "experiment/results/audit_text.hpp"
 #include "experiment/run/version.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bridges/control/run_audit.hpp"
-#include "bridges/lockstep/lockstep_summary.hpp"
+#include "bridges/lockstep/lockstep_service.hpp"
 #include "experiment/results/summary_file.hpp"
 #include "experiment/score/judgement.hpp"
 #include "experiment/score/link_counts.hpp"

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "bridges/base/file_lock.hpp"
+#include "bridges/base/file_descriptor.hpp"
 #include "experiment/results/run_error.hpp"
 
 namespace experiment {

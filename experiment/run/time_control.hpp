@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "bridges/control/sim_service.hpp"
-#include "bridges/control/time_machine.hpp"
 #include "experiment/run/run_inputs.hpp"
 #include "experiment/run/timeline.hpp"
 #include "experiment/score/scoring.hpp"

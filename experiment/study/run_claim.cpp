@@ -7,7 +7,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "bridges/base/file_lock.hpp"
+#include "bridges/base/file_descriptor.hpp"
 #include "experiment/files/no_links.hpp"
 
 namespace experiment {

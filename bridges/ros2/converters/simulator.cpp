@@ -4,6 +4,7 @@
 #include "shoal/sim_audit_t.hpp"
 #include "shoal/sim_event_t.hpp"
 #include "shoal/sim_vehicle_t.hpp"
+#include "shoal/utime_t.hpp"
 
 namespace bridges::ros2 {
 namespace {
@@ -40,6 +41,15 @@ bool write_event(const shoal::sim_event_t& message, std::string_view, CdrWriter&
 SHOAL_ROS2_CONVERTER(write_event, "rcl_interfaces/msg/Log", "/rosout");
 SHOAL_ROS2_CONVERTER(write_audit, "rcl_interfaces/msg/Log", "/rosout");
 SHOAL_ROS2_CONVERTER(write_vehicle_log, "rcl_interfaces/msg/Log", "/rosout");
+
+/// Simulated time.  Other channels may have this type.
+bool write_clock(const shoal::utime_t& message, std::string_view channel, CdrWriter& out) {
+  if (channel != "sim.clock") return false;
+  put_time(out, message.utime);
+  return true;
+}
+
+SHOAL_ROS2_CONVERTER(write_clock, "rosgraph_msgs/msg/Clock", "/clock");
 
 }  // namespace
 }  // namespace bridges::ros2

@@ -12,8 +12,8 @@
 #include <array>
 #include <cstdlib>
 
+#include "bridges/bus/bus_reach.hpp"
 #include "bridges/bus/lcm_bus.hpp"
-#include "bridges/bus/reach_check.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 #include "tests/bridges/lcm/own_network.hpp"
 

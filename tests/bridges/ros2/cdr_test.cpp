@@ -5,7 +5,6 @@
 
 #include <random>
 
-#include "bridges/ros2/cdr_writer.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 
 namespace {

@@ -11,8 +11,7 @@
 #include <regex>
 
 #include "bridges/log/event_log.hpp"
-#include "bridges/log/run_info.hpp"
-#include "bridges/log/time_order.hpp"
+#include "bridges/log/record_reader.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
 #include "sim/config/message_text.hpp"

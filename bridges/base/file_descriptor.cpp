@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bridges/base/file_lock.hpp"
+#include "bridges/base/file_descriptor.hpp"
 
 #include <sys/file.h>
 #include <sys/stat.h>
