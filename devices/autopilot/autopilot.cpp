@@ -7,7 +7,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "devices/autopilot/level_check.hpp"
+#include "devices/autopilot/autopilot_control.hpp"
 #include "devices/joint/joint_of_device.hpp"
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/autopilot_command_t.hpp"

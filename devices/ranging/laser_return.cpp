@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "devices/ranging/ray_casting.hpp"
-#include "devices/ranging/ray_filter.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {

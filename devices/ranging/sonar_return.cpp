@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "devices/ranging/ray_filter.hpp"
+#include "devices/ranging/ray_casting.hpp"
 #include "sim/medium/sea_water.hpp"
 #include "sim/world/world.hpp"
 
