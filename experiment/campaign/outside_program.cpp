@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiment/campaign/outside_program.hpp"
-
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,6 +12,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "experiment/campaign/engines.hpp"
 #include "experiment/files/scratch_directory.hpp"
 #include "experiment/process/child_program.hpp"
 #include "experiment/process/signals.hpp"

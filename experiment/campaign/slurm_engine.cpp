@@ -12,10 +12,9 @@
 
 #include "experiment/campaign/engines.hpp"
 #include "experiment/campaign/manifest.hpp"
-#include "experiment/campaign/outside_program.hpp"
 #include "experiment/files/file_replacement.hpp"
 #include "experiment/files/no_links.hpp"
-#include "experiment/process/shell_word.hpp"
+#include "experiment/process/child_program.hpp"
 #include "experiment/process/signals.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/random/random.hpp"

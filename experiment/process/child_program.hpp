@@ -24,4 +24,7 @@ int start_child(const ChildProgram& program, pid_t& pid);
 /// Returns the environment of this process.
 std::vector<std::string> own_environment();
 
+/// Quotes a word for a POSIX shell, if that is necessary.
+std::string shell_word(const std::string& word);
+
 }  // namespace experiment

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiment/report/algorithm_report.hpp"
-
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "experiment/files/html.hpp"
 #include "experiment/report/chart_axis.hpp"
 #include "experiment/report/report_page.hpp"
+#include "experiment/report/study_report.hpp"
 
 namespace experiment {
 

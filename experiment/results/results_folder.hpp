@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bridges/base/file_descriptor.hpp"
+#include "sim/config/config_node.hpp"
 
 namespace experiment {
 
@@ -16,5 +17,13 @@ class ResultsLock {
  private:
   bridges::FileDescriptor folder_;
 };
+
+/// Removes what an earlier run left in a results folder, except for its world.yaml: summary, figures, tracks, plots,
+/// pages, branches, and the output of the programs that its world names.  Snapshots and records are kept.
+void remove_earlier_run(const std::string& directory);
+
+/// Writes DIRECTORY/world.yaml.  A run does so before its first step, so that the file exists even when the run is
+/// killed. Throws std::runtime_error.
+void write_results_world(const std::string& directory, const sim::ConfigNode& resolved);
 
 }  // namespace experiment

@@ -5,7 +5,7 @@
 
 #include "devices/common/serial_port.hpp"
 #include "devices/comms/message_modem.hpp"
-#include "experiment/process/channel_check.hpp"
+#include "experiment/process/process_check.hpp"
 #include "experiment/run/run.hpp"
 #include "experiment/run/version.hpp"
 #include "experiment/snapshot/run_identity.hpp"

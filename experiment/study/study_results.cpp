@@ -10,7 +10,7 @@
 #include <set>
 
 #include "experiment/files/csv.hpp"
-#include "experiment/results/verdict_json.hpp"
+#include "experiment/results/summary_file.hpp"
 #include "experiment/run/version.hpp"
 #include "experiment/study/algorithm_table.hpp"
 #include "experiment/study/study_equal_cases.hpp"

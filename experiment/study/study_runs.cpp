@@ -7,7 +7,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "experiment/process/shell_word.hpp"
+#include "experiment/process/child_program.hpp"
 #include "experiment/process/signals.hpp"
 #include "experiment/run/version.hpp"
 #include "experiment/study/run_files.hpp"

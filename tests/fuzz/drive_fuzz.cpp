@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "experiment/drive/drive_error.hpp"
-#include "experiment/drive/drive_keys.hpp"
+#include "experiment/drive/driver.hpp"
 #include "experiment/drive/gamepad.hpp"
 #include "experiment/terminal/key_events.hpp"
 #include "tests/fuzz/fuzz_target.hpp"

@@ -7,9 +7,9 @@
 
 #include "experiment/report/study_report.hpp"
 #include "experiment/results/results.hpp"
+#include "experiment/study/study_config.hpp"
 #include "experiment/study/study_curves.hpp"
 #include "experiment/study/study_results.hpp"
-#include "experiment/study/study_seeds.hpp"
 #include "tests/experiment/study/study_folder.hpp"
 
 namespace {

@@ -11,7 +11,6 @@
 
 #include "bridges/lcm/lcm_listener.hpp"
 #include "experiment/drive/drive_error.hpp"
-#include "experiment/drive/drive_keys.hpp"
 #include "experiment/drive/driver.hpp"
 #include "experiment/drive/gamepad_device.hpp"
 #include "experiment/process/signals.hpp"

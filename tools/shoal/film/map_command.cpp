@@ -5,7 +5,7 @@
 #include <memory>
 #include <optional>
 
-#include "experiment/score/map/map_files.hpp"
+#include "experiment/score/map/grid_map.hpp"
 #include "experiment/score/map/published_map.hpp"
 #include "experiment/score/map/true_map.hpp"
 #include "sim/base/log.hpp"

@@ -7,7 +7,7 @@
 #include <iostream>
 #include <thread>
 
-#include "experiment/campaign/outside_program.hpp"
+#include "experiment/campaign/engines.hpp"
 #include "experiment/campaign/study_database.hpp"
 #include "experiment/files/file_replacement.hpp"
 #include "experiment/process/signals.hpp"

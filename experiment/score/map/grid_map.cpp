@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiment/score/map/map_files.hpp"
+#include "experiment/score/map/grid_map.hpp"
 
 #include <spdlog/fmt/fmt.h>
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiment/files/png_check.hpp"
-
 #include <gmock/gmock.h>
 
 #include <filesystem>

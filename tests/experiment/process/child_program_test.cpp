@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiment/process/shell_word.hpp"
+#include "experiment/process/child_program.hpp"
 
 #include <gtest/gtest.h>
 
