@@ -5,6 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "shoal/image_t.hpp"
+#include "sim/image/image.hpp"
+
 namespace viewer {
 
 /// Selects the message of a channel that is drawn; at most one member is set.  Neither: the last message.
@@ -30,5 +33,9 @@ struct LogImage {
 /// log contains; without it, from the first event.  Throws std::runtime_error with the reason.
 LogImage draw_log(const std::string& log, const std::string& channel, const std::string& png,
                   const ImageChoice& choice);
+
+/// Converts the image of a camera message to a displayable one.  Throws std::runtime_error when its size, format and
+/// data are inconsistent; sim::ImageError when compressed data is damaged.
+sim::Image8 displayable(const shoal::image_t& message);
 
 }  // namespace viewer

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "viewer/log/scene_names.hpp"
-#include "viewer/page_data/look_request.hpp"
+#include "viewer/page_data/page_request.hpp"
 #include "viewer/page_data/view_json.hpp"
 
 namespace viewer {

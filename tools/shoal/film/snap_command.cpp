@@ -16,7 +16,6 @@
 #include "viewer/film/camera_rig.hpp"
 #include "viewer/film/film_source.hpp"
 #include "viewer/film/overlay.hpp"
-#include "viewer/film/ping_observer.hpp"
 #include "viewer/film/scene_painter.hpp"
 #include "viewer/images/overview.hpp"
 
