@@ -12,9 +12,8 @@
 #include "sim/config/file_access.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tools/shoal/commands/commands.hpp"
-#include "tools/shoal/options/output_file.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 #include "tools/shoal/start/start_files.hpp"
-#include "tools/shoal/start/start_program.hpp"
 
 namespace tools {
 

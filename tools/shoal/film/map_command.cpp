@@ -11,7 +11,7 @@
 #include "sim/base/log.hpp"
 #include "tools/command_line/checks.hpp"
 #include "tools/shoal/commands/commands.hpp"
-#include "tools/shoal/options/output_file.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 #include "viewer/film/film_source.hpp"
 
 namespace tools {

@@ -13,7 +13,7 @@
 #include "sim/config/message_text.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/mesh/mesh_import.hpp"
-#include "tools/shoal/options/output_file.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 #include "tools/shoal/urdf/shoal_names.hpp"
 #include "tools/shoal/urdf/urdf_import.hpp"
 

@@ -16,7 +16,7 @@
 #include "shoal/sim_info_t.hpp"
 #include "sim/config/message_text.hpp"
 #include "tools/shoal/commands/commands.hpp"
-#include "tools/shoal/options/output_file.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 #include "tools/shoal/records/log_mcap_command.hpp"
 #include "viewer/images/allan_table.hpp"
 #include "viewer/images/log_image.hpp"

@@ -13,8 +13,7 @@
 #include "sim/random/noise.hpp"
 #include "sim/world_file/metric_registry.hpp"
 #include "sim/world_file/world_config.hpp"
-#include "tools/shoal/reference/param_tables.hpp"
-#include "tools/shoal/reference/program_schema.hpp"
+#include "tools/shoal/reference/json_schema.hpp"
 
 namespace tools {
 

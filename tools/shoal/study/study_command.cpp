@@ -13,7 +13,7 @@
 #include "experiment/world_files/world_by_name.hpp"
 #include "sim/base/log.hpp"
 #include "tools/command_line/checks.hpp"
-#include "tools/command_line/name_list.hpp"
+#include "tools/command_line/declared_options.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/study/study_parts.hpp"
 

@@ -14,7 +14,7 @@
 #include "experiment/report/report_page.hpp"
 #include "experiment/study/study_algorithms.hpp"
 #include "experiment/study/study_results.hpp"
-#include "tools/command_line/name_list.hpp"
+#include "tools/command_line/declared_options.hpp"
 #include "tools/shoal/options/shared_options.hpp"
 
 namespace tools {
