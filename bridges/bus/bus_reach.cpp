@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bridges/bus/bus_reach.hpp"
-
 #include <arpa/inet.h>
 
 #include <cstdlib>
@@ -8,6 +6,7 @@
 #include <istream>
 #include <sstream>
 
+#include "bridges/bus/network_check.hpp"
 #include "bridges/lcm/lcm_connection.hpp"
 #include "bridges/lcm/lcm_url.hpp"
 

@@ -20,7 +20,6 @@
 #include <set>
 #include <sstream>
 
-#include "bridges/bus/bus_reach.hpp"
 #include "bridges/lcm/lcm_connection.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
 

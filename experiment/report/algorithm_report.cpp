@@ -10,7 +10,6 @@
 #include "experiment/files/html.hpp"
 #include "experiment/report/chart_axis.hpp"
 #include "experiment/report/report_page.hpp"
-#include "experiment/report/study_report.hpp"
 
 namespace experiment {
 

@@ -11,7 +11,6 @@
 
 #include "experiment/files/html.hpp"
 #include "experiment/report/report_figures.hpp"
-#include "experiment/report/study_report.hpp"
 #include "experiment/run/version.hpp"
 
 namespace experiment {

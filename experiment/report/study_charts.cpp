@@ -11,7 +11,7 @@
 
 #include "experiment/files/html.hpp"
 #include "experiment/report/chart_axis.hpp"
-#include "experiment/report/study_report.hpp"
+#include "experiment/report/report_page.hpp"
 #include "sim/base/number.hpp"
 
 namespace experiment {

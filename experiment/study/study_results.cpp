@@ -13,7 +13,6 @@
 #include "experiment/results/summary_file.hpp"
 #include "experiment/run/version.hpp"
 #include "experiment/study/algorithm_table.hpp"
-#include "experiment/study/study_equal_cases.hpp"
 #include "experiment/study/study_rules.hpp"
 #include "experiment/study/study_tables.hpp"
 

@@ -16,7 +16,6 @@
 #include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
 #include "verification/fidelity/fidelity.hpp"
-#include "verification/fidelity/fidelity_report.hpp"
 
 namespace fidelity_files {
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "devices/comms/micromodem_rates.hpp"
-#include "sim/acoustics/fading.hpp"
+#include "sim/acoustics/acoustics_config.hpp"
 #include "sim/acoustics/multipath.hpp"
 #include "sim/acoustics/propagation.hpp"
 #include "sim/acoustics/rays/ray_tables.hpp"

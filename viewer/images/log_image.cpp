@@ -15,7 +15,6 @@
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
 #include "sim/image/image_file.hpp"
-#include "viewer/images/ranging_plot.hpp"
 
 namespace viewer {
 namespace {

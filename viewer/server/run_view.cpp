@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "experiment/drive/drive_error.hpp"
+#include "experiment/drive/drive_profile.hpp"
 #include "experiment/run/version.hpp"
 #include "shoal/message_codec.hpp"
 #include "viewer/page_data/view_json.hpp"
-#include "viewer/server/forms_text.hpp"
+#include "viewer/server/page_drive.hpp"
 
 namespace viewer {
 

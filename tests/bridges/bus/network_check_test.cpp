@@ -12,7 +12,6 @@
 #include <array>
 #include <cstdlib>
 
-#include "bridges/bus/bus_reach.hpp"
 #include "bridges/bus/lcm_bus.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 #include "tests/bridges/lcm/own_network.hpp"

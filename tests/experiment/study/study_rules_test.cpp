@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "experiment/report/study_report.hpp"
+#include "experiment/report/report_page.hpp"
 #include "experiment/results/results.hpp"
 #include "experiment/study/study_config.hpp"
 #include "experiment/study/study_curves.hpp"

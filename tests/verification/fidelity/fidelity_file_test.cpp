@@ -10,7 +10,6 @@
 #include "sim/world_file/load_world.hpp"
 #include "tests/fidelity/fidelity_files.hpp"
 #include "verification/fidelity/fidelity.hpp"
-#include "verification/fidelity/fidelity_report.hpp"
 
 namespace {
 

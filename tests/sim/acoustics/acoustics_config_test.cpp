@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/acoustics/fading.hpp"
+#include "sim/acoustics/acoustics_config.hpp"
 
 #include <gmock/gmock.h>
 
