@@ -6,6 +6,7 @@
 # MAIN: one of its sources has main(), or the entry of a module; linking what is made of its objects tests its
 # dependencies.
 # COLD: no code of it runs in the steps of a world, so that it is optimized less: -O1 takes a quarter less time to compile.
+# Its files *_presets.yaml are embedded: shoal_embed_presets().
 # <folder>: relative to the folder of the calling CMakeLists.txt; `.` is that folder itself.  The name of the target,
 # and of the room in USES, is the path from the root with `_` for `/`: sim/physics is sim_physics.
 function(shoal_room folder)
@@ -27,6 +28,7 @@ function(shoal_room folder)
     set_target_properties(${room} PROPERTIES UNITY_BUILD ${SHOAL_UNITY} UNITY_BUILD_BATCH_SIZE ${SHOAL_UNITY_BATCH})
     set(scope PUBLIC)
     target_link_libraries(${room} PRIVATE ${ARG_PRIVATE})
+    shoal_embed_presets(${room} ${path})
   else()
     add_library(${room} INTERFACE)
     set(scope INTERFACE)

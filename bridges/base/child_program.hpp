@@ -28,4 +28,7 @@ bool is_program(const std::string& name);
 /// Returns the environment of this process.
 std::vector<std::string> own_environment();
 
+/// Quotes a word for a POSIX shell, if that is necessary.
+std::string shell_word(const std::string& word);
+
 }  // namespace bridges

@@ -20,7 +20,6 @@
 #include <system_error>
 
 #include "bridges/base/forked_work.hpp"
-#include "bridges/bus/reach_check.hpp"
 #include "bridges/lcm/lcm_connection.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bridges/base/json_text.hpp"
-#include "bridges/ros2/cdr_writer.hpp"
+#include "bridges/ros2/cdr.hpp"
 #include "bridges/ros2/ros2_schema.hpp"
 #include "bridges/web/client_json.hpp"
 #include "bridges/web/web_error.hpp"

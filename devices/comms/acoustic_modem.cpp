@@ -5,47 +5,35 @@
 #include <charconv>
 #include <stdexcept>
 
-#include "devices/common/own_clock.hpp"
 #include "devices/comms/micromodem_rates.hpp"
+#include "devices/comms/modem.hpp"
 #include "shoal/acoustic_received_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/modem_send_t.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/config/presets.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
 
+const sim::Presets& acoustic_modem_presets();  // acoustic_modem_presets.yaml
+
 namespace {
 
-/// Sets the values of a preset as defaults of the keys after it.
-void use_preset(AcousticModem::Params& params) {
-  // Packet types of the Micro-Modem.
+std::string preset_of(const MicromodemRate& rate) {
+  return "micromodem_rate" + std::to_string(rate.number);
+}
+
+/// Sets the values of a preset that is a packet type of the Micro-Modem.
+void use_packet_type(AcousticModem::Params& params) {
   for (const MicromodemRate& rate : micromodem_rates()) {
-    if (params.preset != "micromodem_rate" + std::to_string(rate.number)) continue;
+    if (params.preset != preset_of(rate)) continue;
     params.modulation = rate.modulation;
     params.bandwidth_Hz = rate.bandwidth_Hz;
     params.bit_rate_bps = rate.bit_rate_bps;
     params.frames = rate.frames;
     params.frame_bytes = rate.frame_bytes;
     params.preamble_s = micromodem_probe_s;
-  }
-  // Two generic modems with typical values, not those of a product.
-  if (params.preset == "low_rate") {
-    params.frequency_Hz = 10000;
-    params.bandwidth_Hz = 5000;
-    params.bit_rate_bps = 140;
-    params.frame_bytes = 64;
-    params.whole_frames = false;
-    params.source_level_dB = 187;
-  } else if (params.preset == "high_rate") {
-    params.modulation = sim::Modulation::psk;
-    params.frequency_Hz = 26000;
-    params.bandwidth_Hz = 16000;
-    params.bit_rate_bps = 10000;
-    params.frame_bytes = 1024;
-    params.preamble_s = 0.1;
-    params.whole_frames = false;
-    params.source_level_dB = 184;
   }
 }
 
@@ -79,12 +67,11 @@ bool read_code(std::string_view code, sim::Time& sent, std::string& destination)
 
 void AcousticModem::Params::read(sim::ParamReader& in) {
   // Preset.
-  std::vector<std::string> presets;
-  for (const MicromodemRate& rate : micromodem_rates())
-    presets.push_back("micromodem_rate" + std::to_string(rate.number));
-  presets.insert(presets.end(), {"low_rate", "high_rate"});
-  in.read_one_of("preset", preset, presets, "preset of a packet type or modem; the keys below override it");
-  if (!in.describing()) use_preset(*this);
+  std::vector<std::string> packet_types;
+  for (const MicromodemRate& rate : micromodem_rates()) packet_types.push_back(preset_of(rate));
+  acoustic_modem_presets().read(in, *this, std::move(packet_types),
+                                "preset of a packet type or modem; the keys below override it");
+  if (!in.describing()) use_packet_type(*this);
   // Signal.
   in.read("network", network, "only modems of the same network understand each other; others act as noise");
   in.read("source_level_dB", source_level_dB, sim::between(0, 300), "re 1 uPa at 1 m, on its axis");

@@ -3,11 +3,13 @@
 
 #include <numbers>
 
-#include "devices/inertial/imu_presets.hpp"
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/imu_t.hpp"
+#include "sim/config/presets.hpp"
 
 namespace devices {
+
+const sim::Presets& imu_presets();  // imu_presets.yaml
 
 namespace {
 
@@ -37,7 +39,7 @@ void read_gyro(sim::ParamReader& in, InertialParams& gyro) {
   read_in(in, "gyro_scale_ppm", gyro.scale, unit::ppm, "scale error: standard deviation, drawn once for each axis");
   read_in(in, "gyro_misalignment_mrad", gyro.misalignment_rad, unit::mrad,
           "misalignment: standard deviation, drawn once for each pair of axes");
-  read_range(in, "gyro_range_dps", gyro.range, unit::degps, "deg/s, the output is limited to +-this");
+  read_range(in, "gyro_range_dps", gyro.range, unit::degps, "limit of the magnitude of the output, deg/s");
   read_in(in, "gyro_resolution_dps", gyro.resolution, unit::degps, "deg/s, step of the output; 0: none");
 }
 
@@ -54,7 +56,7 @@ void read_accel(sim::ParamReader& in, InertialParams& accel) {
   read_in(in, "accel_scale_ppm", accel.scale, unit::ppm, "scale error: standard deviation, drawn once for each axis");
   read_in(in, "accel_misalignment_mrad", accel.misalignment_rad, unit::mrad,
           "misalignment: standard deviation, drawn once for each pair of axes");
-  read_range(in, "accel_range_g", accel.range, unit::mps2_per_g, "the output is limited to +-this");
+  read_range(in, "accel_range_g", accel.range, unit::mps2_per_g, "limit of the magnitude of the output, g");
   read_in(in, "accel_resolution_mg", accel.resolution, unit::mg, "step of the output; 0: none");
 }
 
@@ -65,15 +67,7 @@ double time_constant_s(double bandwidth_Hz) {
 }  // namespace
 
 void Imu::Params::read(sim::ParamReader& in) {
-  std::vector<std::string> names;
-  for (const ImuPreset& unit : imu_presets()) names.push_back(unit.name);
-  in.read_one_of("preset", preset, names, "preset of a product by its data sheet; the keys below override it");
-  // The preset supplies the defaults of the keys that follow.
-  for (const ImuPreset& unit : imu_presets()) {
-    if (unit.name != preset || in.describing()) continue;
-    gyro = unit.gyro;
-    accel = unit.accel;
-  }
+  imu_presets().read(in, *this, {"ideal"}, "preset of a product by its data sheet; the keys below override it");
   in.read_or_word("bandwidth_Hz", bandwidth_Hz, sim::above(0), {"unlimited"},
                   "bandwidth of a first-order low pass on the true values");
   in.read("gyro_noise", gyro_noise, "further error of each axis, rad/s");

@@ -22,6 +22,21 @@ struct InertialParams {
   double resolution = 0;        ///< quantization step of the output, [u]; 0: none
 };
 
+/// Conversion factors from data sheet units to SI units.
+namespace unit {
+inline constexpr double mps2_per_g = 9.80665;  ///< standard gravity, independent of the gravity of the world
+inline constexpr double degps = sim::degrees_to_radians(1);
+inline constexpr double deg_per_h = degps / 3600;
+inline constexpr double deg_per_sqrt_h = degps / 60;  ///< angle random walk, in rad / sqrt(s)
+inline constexpr double deg_per_h_per_sqrt_h = degps / 3600 / 60;
+inline constexpr double mps_per_sqrt_h = 1.0 / 60;  ///< velocity random walk, in m / s / sqrt(s)
+inline constexpr double mg = 1e-3 * mps2_per_g;
+inline constexpr double ug = 1e-6 * mps2_per_g;
+inline constexpr double ug_per_sqrt_h = ug / 60;
+inline constexpr double ppm = 1e-6;
+inline constexpr double mrad = 1e-3;
+}  // namespace unit
+
 /// Allan deviation of a first-order Gauss-Markov process of standard deviation 1 over correlation times `tau / T_c`:
 /// sigma_A^2 = 2 / x (1 - (3 - 4 exp(-x) + exp(-2 x)) / (2 x)).  Derived from the definition of the Allan variance with
 /// the covariance exp(-|t| / T_c).

@@ -5,13 +5,15 @@
 #include <cmath>
 #include <limits>
 
-#include "devices/navigation/dvl_presets.hpp"
-#include "devices/ranging/ray_filter.hpp"
+#include "devices/ranging/ray_casting.hpp"
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/dvl_t.hpp"
+#include "sim/config/presets.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
+
+const sim::Presets& dvl_presets();  // dvl_presets.yaml
 
 namespace {
 
@@ -43,18 +45,7 @@ std::optional<BeamSystem> beam_system(const std::array<sim::Vector3d, dvl_beams>
 }  // namespace
 
 void Dvl::Params::read(sim::ParamReader& in) {
-  std::vector<std::string> names;
-  for (const DvlPreset& unit : dvl_presets()) names.push_back(unit.name);
-  in.read_one_of("preset", preset, names, "preset of a product by its data sheet; the keys below override it");
-  // The preset sets the defaults of the keys that follow.
-  for (const DvlPreset& unit : dvl_presets()) {
-    if (unit.name != preset || in.describing()) continue;
-    beam_angle_rad = sim::degrees_to_radians(unit.beam_angle_deg);
-    altitude_min_m = unit.altitude_min_m, altitude_max_m = unit.altitude_max_m;
-    beam_std_mps = unit.beam_std_mps, beam_std_per_mps = unit.beam_std_per_mps;
-    scale_std = unit.scale_std;
-    velocity_noise.bias_std = unit.bias_std_mps;
-  }
+  dvl_presets().read(in, *this, {}, "preset of a product by its data sheet; the keys below override it");
   // Geometry and detection of beams.
   in.read_deg("beam_angle_deg", beam_angle_rad, sim::between(5, 60), "between each beam and -z");
   in.read_deg("first_azimuth_deg", first_azimuth_rad, sim::between(-360, 360),

@@ -4,25 +4,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "devices/common/param_checks.hpp"
-#include "devices/ranging/lidar_presets.hpp"
+#include "devices/ranging/ray_casting.hpp"
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/planar_lidar_t.hpp"
+#include "sim/config/presets.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
 
+const sim::Presets& lidar_presets();  // lidar_presets.yaml
+
 void Lidar::Params::read(sim::ParamReader& in) {
-  std::vector<std::string> names{"none"};
-  for (const LidarPreset& unit : lidar_presets()) names.push_back(unit.name);
-  in.read_one_of("preset", preset, names, "preset of a product by its data sheet; the keys below override it");
-  // The preset sets the defaults of the keys that follow.
-  for (const LidarPreset& unit : lidar_presets()) {
-    if (unit.name != preset || in.describing()) continue;
-    beams = unit.beams;
-    fov_rad = unit.fov_rad;
-    laser = unit.laser;
-  }
+  lidar_presets().read(in, *this, {"none"}, "preset of a product by its data sheet; the keys below override it");
   in.read("beams", beams, sim::between(1, 100000), "rays per scan");
   in.read_deg("fov_deg", fov_rad, sim::between(0, 360), "angle the fan covers");
   in.read("intensities", intensities, "the message also holds the intensity of each return");

@@ -7,13 +7,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "devices/common/param_checks.hpp"
-#include "devices/ranging/lidar_presets.hpp"
+#include "devices/ranging/ray_casting.hpp"
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/point_cloud_t.hpp"
+#include "sim/config/presets.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {
+
+const sim::Presets& lidar3d_presets();  // lidar3d_presets.yaml
 
 namespace {
 
@@ -22,18 +24,7 @@ constexpr int max_rings = 1000;  // ring numbers have 16 bits in the message
 }  // namespace
 
 void Lidar3d::Params::read(sim::ParamReader& in) {
-  std::vector<std::string> names{"none"};
-  for (const Lidar3dPreset& unit : lidar3d_presets()) names.push_back(unit.name);
-  in.read_one_of("preset", preset, names, "preset of a product by its data sheet; the keys below override it");
-  // The preset sets the defaults of the keys that follow.
-  for (const Lidar3dPreset& unit : lidar3d_presets()) {
-    if (unit.name != preset || in.describing()) continue;
-    rings = unit.rings;
-    lowest_rad = unit.lowest_rad;
-    highest_rad = unit.highest_rad;
-    columns = unit.columns;
-    laser = unit.laser;
-  }
+  lidar3d_presets().read(in, *this, {"none"}, "preset of a product by its data sheet; the keys below override it");
   // Rings and columns.
   in.read("rings", rings, sim::between(1, max_rings), "beams above each other, evenly spread");
   in.read_deg("lowest_deg", lowest_rad, sim::between(-90, 90), "elevation of the first ring");

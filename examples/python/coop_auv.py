@@ -36,7 +36,7 @@ def checksum(data):
 
 
 def decode_frame(data, near_utime):
-    """The state in a frame of docs/guides/cooperative_navigation.md, as a dict; None when it is none, or of more
+    """The state in a frame of docs/guides/slots_and_frames.md, as a dict; None when it is none, or of more
     than a minute from then."""
     if len(data) != 28 or data[0] != 0x10 or checksum(data[:26]) != struct.unpack(">H", data[26:])[0]:
         return None

@@ -2,7 +2,7 @@
 """The filter of shoal-coop-auv in plain Python: position by dead reckoning and one-way ranges.
 
 States: east, north (m), heading bias (rad), speed scale, range bias (m), drift of that (m/s).  The equations are in
-docs/guides/cooperative_navigation.md.
+docs/models/marine_ekf.md.
 """
 import math
 from collections import deque

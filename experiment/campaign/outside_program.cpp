@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiment/campaign/outside_program.hpp"
-
 #include <signal.h>
 #include <sys/wait.h>
 
@@ -12,6 +10,7 @@
 #include <thread>
 
 #include "bridges/base/child_program.hpp"
+#include "experiment/campaign/engines.hpp"
 #include "experiment/files/scratch_directory.hpp"
 #include "experiment/process/signals.hpp"
 #include "experiment/results/run_record.hpp"

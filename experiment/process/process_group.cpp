@@ -15,7 +15,7 @@
 
 #include "bridges/base/child_program.hpp"
 #include "bridges/signing/run_key.hpp"
-#include "sim/config/shipped_files.hpp"
+#include "sim/config/file_access.hpp"
 
 namespace experiment {
 

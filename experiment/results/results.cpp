@@ -16,10 +16,9 @@
 
 #include "bridges/base/json_text.hpp"
 #include "experiment/files/gnuplot.hpp"
-#include "experiment/results/audit_text.hpp"
-#include "experiment/results/results_world.hpp"
+#include "experiment/results/results_folder.hpp"
 #include "experiment/results/run_plots.hpp"
-#include "experiment/results/verdict_json.hpp"
+#include "experiment/results/summary_file.hpp"
 #include "sim/base/log.hpp"
 #include "sim/base/number.hpp"
 

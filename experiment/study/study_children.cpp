@@ -19,7 +19,6 @@
 #include "experiment/files/no_links.hpp"
 #include "experiment/process/signals.hpp"
 #include "experiment/run/version.hpp"
-#include "experiment/study/run_claim.hpp"
 #include "experiment/study/run_files.hpp"
 #include "experiment/study/study_algorithms.hpp"
 #include "experiment/study/study_runs.hpp"

@@ -11,10 +11,9 @@
 
 #include "bridges/base/json_text.hpp"
 #include "experiment/files/csv.hpp"
-#include "experiment/results/verdict_json.hpp"
+#include "experiment/results/summary_file.hpp"
 #include "experiment/run/version.hpp"
 #include "experiment/study/algorithm_table.hpp"
-#include "experiment/study/study_equal_cases.hpp"
 #include "experiment/study/study_rules.hpp"
 #include "experiment/study/study_tables.hpp"
 

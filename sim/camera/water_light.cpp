@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "sim/base/processor.hpp"
+
 namespace sim {
 
 namespace {
@@ -182,12 +184,11 @@ SHOAL_INLINE void light_all(const WaterLight& water, const SkyLight& sky, WaterR
 
 #undef SHOAL_INLINE
 
-void light_sse2(const WaterLight& water, const SkyLight& sky, WaterRays& rays) {
+void light_baseline(const WaterLight& water, const SkyLight& sky, WaterRays& rays) {
   light_all(water, sky, rays);
 }
 
-// The results have equal bits: AVX2 alone has no fused multiply-add.
-[[gnu::target("avx2")]] void light_avx2(const WaterLight& water, const SkyLight& sky, WaterRays& rays) {
+SHOAL_AVX2 void light_avx2(const WaterLight& water, const SkyLight& sky, WaterRays& rays) {
   light_all(water, sky, rays);
 }
 
@@ -200,7 +201,7 @@ LinearColor daylight_at(const WaterLight& water, float depth_m) {
 }
 
 void light_water(const WaterLight& water, const SkyLight& sky, WaterRays& rays) {
-  static const auto best = __builtin_cpu_supports("avx2") ? light_avx2 : light_sse2;
+  static const auto best = has_avx2() ? light_avx2 : light_baseline;
   best(water, sky, rays);
 }
 

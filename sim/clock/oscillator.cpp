@@ -5,28 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/config/presets.hpp"
+
 namespace sim {
 
+const Presets& oscillator_presets();  // oscillator_presets.yaml
+
 namespace {
-
-/// Preset of an oscillator, without its initial setting (`offset_s` and `offset_std_s`).
-struct ClockPreset {
-  const char* name;
-  double drift_std_ppm, white_fm, random_walk_fm, flicker_floor, temperature_ppm_per_C;
-};
-
-// tcxo, ocxo: typical of their class, not of one unit; an underwater OCXO ages by 0.2 to 2e-9 per day
-// (slx-timing.com/underwater-system-precision-clock, seen), and a drift of 0.02 ppm is some ten days of that.
-// csac: Microchip SA.45s.  Seen, Microchip's notes on its timing error (Chip Scale Atomic Clocks: Effects on Timing
-// Error): about 1 us after 24 h, 5 us after 48 h, 8 to 12 us after 72 h without an initial error; a random walk of
-// 1e-13 / sqrt(s) gives 1.5, 4.2 and 7.6 us.  Not verified against its data sheet: Allan deviation 3e-10 at 1 s falling
-// to 1e-11 at 1000 s, 5e-11 at shipment, 5e-10 over 45 C.
-constexpr ClockPreset presets[] = {
-    {"perfect", 0, 0, 0, 0, 0},
-    {"tcxo", 1, 1e-9, 1e-11, 5e-10, 0.05},
-    {"ocxo", 0.02, 1e-11, 1e-13, 1e-11, 1e-4},
-    {"csac", 5e-5, 3e-10, 1e-13, 5e-12, 1e-5},
-};
 
 /// Limit of the frequency error, beyond any real oscillator, so that the clock never runs backwards.
 constexpr double max_rate = 0.1;
@@ -34,19 +19,8 @@ constexpr double max_rate = 0.1;
 }  // namespace
 
 void ClockConfig::read(ParamReader& in) {
-  // Preset, and the values that it sets.
-  std::vector<std::string> names;
-  for (const ClockPreset& each : presets) names.emplace_back(each.name);
-  in.read_one_of("preset", preset, names,
-                 "a kind of oscillator, see docs/models/clocks.md; the keys below win over it");
-  for (const ClockPreset& each : presets) {
-    if (each.name != preset || in.describing()) continue;
-    drift_std_ppm = each.drift_std_ppm;
-    white_fm = each.white_fm;
-    random_walk_fm = each.random_walk_fm;
-    flicker_floor = each.flicker_floor;
-    temperature_ppm_per_C = each.temperature_ppm_per_C;
-  }
+  oscillator_presets().read(in, *this, {"perfect"},
+                            "a kind of oscillator, see docs/models/clocks.md; the keys below win over it");
   // Initial offset and drift.
   constexpr double year_s = 31557600;
   in.read("offset_s", offset_s, between(-year_s, year_s), "reading minus true time at the start");

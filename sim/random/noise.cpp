@@ -16,11 +16,11 @@ void NoiseParams::read(ParamReader& in) {
   in.read("gauss_markov_std", gauss_markov_std, at_least(0), "standard deviation of a slowly changing error");
   in.read("gauss_markov_time_s", gauss_markov_time_s, above(0), "correlation time of that error");
   in.read("gaussian_std", gaussian_std, at_least(0), "standard deviation of white noise, drawn for each value");
-  in.read("uniform_half_width", uniform_half_width, at_least(0), "uniform white noise between -this and this");
+  in.read("uniform_half_width", uniform_half_width, at_least(0), "half width of uniform white noise");
   in.read("outlier_probability", outlier_probability, between(0, 1), "share of values that are outliers");
   in.read("outlier_std", outlier_std, at_least(0), "standard deviation of the error of an outlier");
   in.read("quantization", quantization, at_least(0), "step of the output; 0: none");
-  in.read("saturation", saturation, above(0), "saturation: the output is limited to +-this; unset: no limit");
+  in.read("saturation", saturation, above(0), "limit of the magnitude of the output (saturation); unset: no limit");
 }
 
 bool NoiseParams::any() const {

@@ -13,16 +13,14 @@ namespace sim {
 /// Query of a packet in a layer.  Callbacks get it by its first member.
 struct EmbreeScene::Query {
   Query(const Layer& layer, RayPacket& rays_, unsigned lanes, const RayFilter& filter_)
-      : rays(rays_), filter(filter_), floats(layer.radius_m) {
-    rtcInitIntersectContext(&context);
-    if (rays.coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+      : embree(rays_.coherent), rays(rays_), filter(filter_), floats(layer.radius_m) {
     double from[3][RayPacket::size];
     for (int axis = 0; axis < 3; ++axis)
       for (int i = 0; i < RayPacket::size; ++i) from[axis][i] = rays.origin[axis][i] - layer.origin_W[axis];
     floats.aim(from, rays.direction, rays.range_m, lanes);
   }
 
-  RTCIntersectContext context;
+  RayQuery embree;  // first: see RayQuery
   RayPacket& rays;
   const RayFilter& filter;
   unsigned blocked = 0;  // lanes
@@ -200,7 +198,7 @@ void EmbreeScene::cast_packet(RayPacket& rays, unsigned lanes, const Targets& ta
   targets.for_each_shape([&](const RayShape& shape) { cast_at(shape, rays, lanes); });
   for (int i = 0; i < targets.tree_count; ++i) {
     Query query(*targets.trees[i], rays, lanes, targets.filter);
-    query.floats.intersect(targets.trees[i]->scene.get(), query.context);
+    query.floats.intersect(targets.trees[i]->scene.get(), query.embree);
   }
 }
 
@@ -212,7 +210,7 @@ unsigned EmbreeScene::blocked_packet(RayPacket& rays, unsigned lanes, const Targ
   });
   for (int i = 0; i < targets.tree_count && (lanes & ~blocked) != 0; ++i) {
     Query query(*targets.trees[i], rays, lanes & ~blocked, targets.filter);
-    query.floats.find_occluded(targets.trees[i]->scene.get(), query.context);
+    query.floats.find_occluded(targets.trees[i]->scene.get(), query.embree);
     blocked |= query.blocked;
   }
   return blocked;

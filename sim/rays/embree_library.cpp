@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "sim/base/processor.hpp"
+
 namespace sim {
 namespace {
 
@@ -16,7 +18,7 @@ using DeviceHandle = std::unique_ptr<RTCDeviceTy, DeviceDeleter>;
 
 /// The option `threads` of rtcNewDevice is not set, as it would limit TBB in the whole process.
 DeviceHandle make_device() {
-  DeviceHandle device(rtcNewDevice(__builtin_cpu_supports("avx2") ? "isa=avx2" : ""));
+  DeviceHandle device(rtcNewDevice(has_avx2() ? "isa=avx2" : ""));
   if (!device)
     throw std::runtime_error("Embree: no device, error " +
                              std::to_string(static_cast<int>(rtcGetDeviceError(nullptr))));

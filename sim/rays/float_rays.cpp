@@ -75,15 +75,15 @@ namespace sim {
   }
 }
 
-void FloatRays::aim_all_sse2(FloatRays& out, const double (&from)[3][RayPacket::size],
-                             const double (&direction)[3][RayPacket::size], const double (&range_m)[RayPacket::size],
-                             unsigned lanes) {
+void FloatRays::aim_all_baseline(FloatRays& out, const double (&from)[3][RayPacket::size],
+                                 const double (&direction)[3][RayPacket::size],
+                                 const double (&range_m)[RayPacket::size], unsigned lanes) {
   aim_all(out, from, direction, range_m, lanes);
 }
 
-[[gnu::target("avx2")]] void FloatRays::aim_all_avx2(FloatRays& out, const double (&from)[3][RayPacket::size],
-                                                     const double (&direction)[3][RayPacket::size],
-                                                     const double (&range_m)[RayPacket::size], unsigned lanes) {
+SHOAL_AVX2 void FloatRays::aim_all_avx2(FloatRays& out, const double (&from)[3][RayPacket::size],
+                                        const double (&direction)[3][RayPacket::size],
+                                        const double (&range_m)[RayPacket::size], unsigned lanes) {
   aim_all(out, from, direction, range_m, lanes);
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <embree3/rtcore.h>
-
 #include <bit>
 #include <cmath>
 #include <cstdint>
 
+#include "sim/base/processor.hpp"
+#include "sim/rays/embree_library.hpp"
 #include "sim/rays/ray_shape.hpp"
 
 namespace sim {
@@ -35,7 +35,7 @@ class FloatRays {
       return;
     }
     count_ = RayPacket::size;
-    static const auto best = __builtin_cpu_supports("avx2") ? aim_all_avx2 : aim_all_sse2;
+    static const auto best = has_avx2() ? aim_all_avx2 : aim_all_baseline;
     best(*this, from, direction, range_m, lanes);
   }
 
@@ -65,20 +65,20 @@ class FloatRays {
             all.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID};
   }
 
-  /// Finds hits.  `context` is the first member of a struct of the caller, which the callbacks get.
-  void intersect(RTCScene scene, RTCIntersectContext& context) {
+  /// Finds hits.
+  void intersect(RTCScene scene, RayQuery& query) {
     if (none()) return;
     if (count_ == 1)
-      rtcIntersect1(scene, &context, reinterpret_cast<RTCRayHit*>(data_));
+      query.intersect(scene, *reinterpret_cast<RTCRayHit*>(data_));
     else
-      rtcIntersect8(valid_, scene, &context, reinterpret_cast<RTCRayHit8*>(data_));
+      query.intersect(scene, valid_, *reinterpret_cast<RTCRayHit8*>(data_));
   }
-  void find_occluded(RTCScene scene, RTCIntersectContext& context) {
+  void find_occluded(RTCScene scene, RayQuery& query) {
     if (none()) return;
     if (count_ == 1)
-      rtcOccluded1(scene, &context, reinterpret_cast<RTCRay*>(data_));
+      query.find_occluded(scene, *reinterpret_cast<RTCRay*>(data_));
     else
-      rtcOccluded8(valid_, scene, &context, reinterpret_cast<RTCRay8*>(data_));
+      query.find_occluded(scene, valid_, *reinterpret_cast<RTCRay8*>(data_));
   }
 
  private:
@@ -113,7 +113,7 @@ class FloatRays {
   using Aim = void(FloatRays& out, const double (&from)[3][RayPacket::size],
                    const double (&direction)[3][RayPacket::size], const double (&range_m)[RayPacket::size],
                    unsigned lanes);
-  static Aim aim_all, aim_all_sse2, aim_all_avx2;
+  static Aim aim_all, aim_all_baseline, aim_all_avx2;
   bool none() const {
     int any = 0;
     for (unsigned i = 0; i < count_; ++i) any |= valid_[i];

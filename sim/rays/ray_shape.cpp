@@ -8,6 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "sim/base/processor.hpp"
 #include "sim/ode/ode_math.hpp"
 #include "sim/rays/triangle_scene.hpp"
 
@@ -188,50 +189,48 @@ SHOAL_INLINE unsigned near_lanes_of(const RayShape& shape, const RayPacket& rays
 
 #undef SHOAL_INLINE
 
-unsigned near_lanes_sse2(const RayShape& shape, const RayPacket& rays) {
+unsigned near_lanes_baseline(const RayShape& shape, const RayPacket& rays) {
   return near_lanes_of(shape, rays);
 }
 
-[[gnu::target("avx2")]] unsigned near_lanes_avx2(const RayShape& shape, const RayPacket& rays) {
+SHOAL_AVX2 unsigned near_lanes_avx2(const RayShape& shape, const RayPacket& rays) {
   return near_lanes_of(shape, rays);
 }
 
-void ranges_sse2(const RayShape& shape, const RayPacket& rays, unsigned lanes, double (&range_m)[RayPacket::size]) {
+void ranges_baseline(const RayShape& shape, const RayPacket& rays, unsigned lanes, double (&range_m)[RayPacket::size]) {
   ranges_to_any(shape, rays, lanes, range_m);
 }
 
-void see_sse2(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
-              double (&direction)[3][RayPacket::size]) {
+void see_baseline(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
+                  double (&direction)[3][RayPacket::size]) {
   transform_all_to(shape, rays, from, direction);
 }
 
-// The results have equal bits: AVX2 alone has no fused multiply-add.
-
-[[gnu::target("avx2")]] void ranges_avx2(const RayShape& shape, const RayPacket& rays, unsigned lanes,
-                                         double (&range_m)[RayPacket::size]) {
+SHOAL_AVX2 void ranges_avx2(const RayShape& shape, const RayPacket& rays, unsigned lanes,
+                            double (&range_m)[RayPacket::size]) {
   ranges_to_any(shape, rays, lanes, range_m);
 }
 
-[[gnu::target("avx2")]] void see_avx2(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
-                                      double (&direction)[3][RayPacket::size]) {
+SHOAL_AVX2 void see_avx2(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
+                         double (&direction)[3][RayPacket::size]) {
   transform_all_to(shape, rays, from, direction);
 }
 
 }  // namespace
 
 unsigned near_lanes(const RayShape& shape, const RayPacket& rays, unsigned lanes) {
-  static const auto best = __builtin_cpu_supports("avx2") ? near_lanes_avx2 : near_lanes_sse2;
+  static const auto best = has_avx2() ? near_lanes_avx2 : near_lanes_baseline;
   return lanes & best(shape, rays);
 }
 
 void find_ranges(const RayShape& shape, const RayPacket& rays, unsigned lanes, double (&range_m)[RayPacket::size]) {
-  static const auto best = __builtin_cpu_supports("avx2") ? ranges_avx2 : ranges_sse2;
+  static const auto best = has_avx2() ? ranges_avx2 : ranges_baseline;
   best(shape, rays, lanes, range_m);
 }
 
 void transform_to(const RayShape& shape, const RayPacket& rays, double (&from)[3][RayPacket::size],
                   double (&direction)[3][RayPacket::size]) {
-  static const auto best = __builtin_cpu_supports("avx2") ? see_avx2 : see_sse2;
+  static const auto best = has_avx2() ? see_avx2 : see_baseline;
   best(shape, rays, from, direction);
 }
 

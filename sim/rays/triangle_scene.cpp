@@ -14,9 +14,7 @@ namespace sim {
 /// Query of a packet: rays in the frame of the mesh, relative to its center.  Callbacks get it by its first member.
 struct TriangleScene::Query {
   Query(const TriangleScene& scene_, const RayShape& shape, const RayPacket& rays_, unsigned lanes)
-      : scene(scene_), rays(rays_), floats(scene_.radius_m_) {
-    rtcInitIntersectContext(&context);
-    if (rays.coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+      : embree(rays_.coherent), scene(scene_), rays(rays_), floats(scene_.radius_m_) {
     transform_to(shape, rays, from, direction);
     floats.aim(from, direction, rays.range_m, lanes);
     for (int i = 0; i < RayPacket::size; ++i) {
@@ -35,7 +33,7 @@ struct TriangleScene::Query {
   bool at_start(float tfar) const { return tfar <= 4 * floats.margin_m(); }
   void note(int lane, float tfar, std::uint32_t triangle);
 
-  RTCIntersectContext context;
+  RayQuery embree;  // first: see RayQuery
   const TriangleScene& scene;
   const RayPacket& rays;
   unsigned hit = 0;  // lanes
@@ -101,8 +99,7 @@ TriangleScene::TriangleScene(const Mesh& mesh) : mesh_(mesh), scene_(rtcNewScene
   rtcCommitGeometry(geometry.get());
   rtcAttachGeometry(scene_.get(), geometry.get());
   // Robust: no ray passes between two adjacent triangles.  The other: cast() sets a filter only where it needs one.
-  rtcSetSceneFlags(scene_.get(),
-                   static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+  rtcSetSceneFlags(scene_.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RayQuery::filter_flag));
   commit_alone(scene_.get());
 }
 
@@ -199,7 +196,7 @@ void TriangleScene::prefetch(std::uint32_t triangle) const {
 unsigned TriangleScene::cast(const RayShape& shape, RayPacket& rays, unsigned lanes) const {
   if (!std::isfinite(clearance_)) return cast_near_edges(shape, rays, lanes);
   Query query(*this, shape, rays, lanes);
-  query.floats.intersect(scene_.get(), query.context);
+  query.floats.intersect(scene_.get(), query.embree);
   // Sort the lanes into those with a clear hit and others, and load the triangles of the former into the cache.
   unsigned clear = 0, unclear = 0;
   for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
@@ -226,8 +223,8 @@ unsigned TriangleScene::cast(const RayShape& shape, RayPacket& rays, unsigned la
 /// Casts rays that may hit several triangles at about the same range.
 unsigned TriangleScene::cast_near_edges(const RayShape& shape, RayPacket& rays, unsigned lanes) const {
   Query query(*this, shape, rays, lanes);
-  query.context.filter = filter_cast;
-  query.floats.intersect(scene_.get(), query.context);
+  query.embree.set_filter(filter_cast);
+  query.floats.intersect(scene_.get(), query.embree);
   for (unsigned rest = lanes; rest != 0; rest &= rest - 1) {
     const int lane = std::countr_zero(rest);
     for (int i = 0; i < query.found[lane]; ++i) prefetch(query.candidates[lane][i].triangle);
@@ -273,7 +270,7 @@ void TriangleScene::filter_blocked(const RTCFilterFunctionNArguments* arguments)
 
 unsigned TriangleScene::find_blocked(const RayShape& shape, const RayPacket& rays, unsigned lanes) const {
   Query query(*this, shape, rays, lanes);
-  query.floats.find_occluded(scene_.get(), query.context);
+  query.floats.find_occluded(scene_.get(), query.embree);
   return query.hit;
 }
 

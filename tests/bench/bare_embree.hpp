@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <embree3/rtcore.h>
 #include <ode/ode.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "sim/geometry/mesh.hpp"
+#include "sim/rays/embree_library.hpp"
 
 /// What Embree alone does, used in the plain way: single precision throughout, one scene, no filters.
 namespace bare_embree {

@@ -194,11 +194,10 @@ void lidars_bare_single(benchmark::State& state) {
   for (auto _ : state) {
     const BareFan& fan = fans[next++ % fans.size()];
     for (int i = 0; i < beams; ++i) {
-      RTCIntersectContext context;
-      rtcInitIntersectContext(&context);
+      sim::RayQuery query(false);
       RTCRayHit ray;
       aim(ray, 1, 0, fan.origin, fan.directions[i].data(), range_m);
-      rtcIntersect1(all.bare->get(), &context, &ray);
+      query.intersect(all.bare->get(), ray);
       hits[i] = hit_of(ray, 1, 0);
     }
     benchmark::DoNotOptimize(hits.data());
@@ -207,30 +206,28 @@ void lidars_bare_single(benchmark::State& state) {
 }
 
 void bare_packets(RTCScene scene, const float* origin, const std::array<float, 3>* directions, int count, float range,
-                  BareHit* hits, RTCIntersectContextFlags flags) {
+                  BareHit* hits, bool coherent) {
   for (int first = 0; first < count; first += 8) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = flags;
+    sim::RayQuery query(coherent);
     alignas(64) int valid[8];
     RTCRayHit8 rays;
     for (int i = 0; i < 8; ++i) {
       valid[i] = first + i < count ? -1 : 0;
       aim(rays, 8, i, origin, directions[std::min(first + i, count - 1)].data(), range);
     }
-    rtcIntersect8(valid, scene, &context, &rays);
+    query.intersect(scene, valid, rays);
     for (int i = 0; i < 8 && first + i < count; ++i) hits[first + i] = hit_of(rays, 8, i);
   }
 }
 
-void lidars_bare_packets(benchmark::State& state, RTCIntersectContextFlags flags) {
+void lidars_bare_packets(benchmark::State& state, bool coherent) {
   const Strewn& all = strewn(static_cast<int>(state.range(0)));
   const std::vector<BareFan> fans = make_bare_fans();
   std::vector<BareHit> hits(beams);
   std::size_t next = 0;
   for (auto _ : state) {
     const BareFan& fan = fans[next++ % fans.size()];
-    bare_packets(all.bare->get(), fan.origin, fan.directions.data(), beams, range_m, hits.data(), flags);
+    bare_packets(all.bare->get(), fan.origin, fan.directions.data(), beams, range_m, hits.data(), coherent);
     benchmark::DoNotOptimize(hits.data());
   }
   per_ray(state);
@@ -278,13 +275,11 @@ void camera_ours(benchmark::State& state, bool shadows) {
 
 /// Shadow rays of up to `count` hits, in packets; returns how many are blocked.
 int bare_shadows(RTCScene scene, const float* origin, const std::array<float, 3>* directions, int count,
-                 const BareHit* hits, RTCIntersectContextFlags flags) {
+                 const BareHit* hits, bool coherent) {
   const Eigen::Vector3f to_sun = sun_W.cast<float>();
   int blocked = 0;
   for (int first = 0; first < count; first += 8) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = flags;
+    sim::RayQuery query(coherent);
     alignas(64) int valid[8];
     RTCRay8 rays;
     auto* const all = reinterpret_cast<RTCRayN*>(&rays);
@@ -307,13 +302,13 @@ int bare_shadows(RTCScene scene, const float* origin, const std::array<float, 3>
       RTCRayN_mask(all, 8, i) = ~0u;
       RTCRayN_flags(all, 8, i) = 0;
     }
-    rtcOccluded8(valid, scene, &context, &rays);
+    query.find_occluded(scene, valid, rays);
     for (int i = 0; i < 8; ++i) blocked += valid[i] != 0 && RTCRayN_tfar(all, 8, i) < 0;
   }
   return blocked;
 }
 
-void camera_bare(benchmark::State& state, RTCIntersectContextFlags flags, bool shadows) {
+void camera_bare(benchmark::State& state, bool coherent, bool shadows) {
   const Strewn& all = strewn(static_cast<int>(state.range(0)));
   const std::vector<Ray> rays = camera_rays();
   const Eigen::Vector3f p = rays[0].origin_W.cast<float>();
@@ -325,9 +320,10 @@ void camera_bare(benchmark::State& state, RTCIntersectContextFlags flags, bool s
   std::vector<BareHit> hits(rays.size());
   for (auto _ : state) {
     const int count = static_cast<int>(rays.size());
-    bare_packets(all.bare->get(), p.data(), directions.data(), count, camera_range_m, hits.data(), flags);
+    bare_packets(all.bare->get(), p.data(), directions.data(), count, camera_range_m, hits.data(), coherent);
     if (shadows)
-      benchmark::DoNotOptimize(bare_shadows(all.bare->get(), p.data(), directions.data(), count, hits.data(), flags));
+      benchmark::DoNotOptimize(
+          bare_shadows(all.bare->get(), p.data(), directions.data(), count, hits.data(), coherent));
   }
 }
 
@@ -352,25 +348,13 @@ void update_bare(benchmark::State& state) {
 }  // namespace
 
 BENCHMARK(lidars_bare_single)->RangeMultiplier(10)->Range(10, 10000);
-BENCHMARK_CAPTURE(lidars_bare_packets, incoherent, RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT)
-    ->RangeMultiplier(10)
-    ->Range(10, 10000);
-BENCHMARK_CAPTURE(lidars_bare_packets, coherent, RTC_INTERSECT_CONTEXT_FLAG_COHERENT)
-    ->RangeMultiplier(10)
-    ->Range(10, 10000);
+BENCHMARK_CAPTURE(lidars_bare_packets, incoherent, false)->RangeMultiplier(10)->Range(10, 10000);
+BENCHMARK_CAPTURE(lidars_bare_packets, coherent, true)->RangeMultiplier(10)->Range(10, 10000);
 BENCHMARK(lidars_ours)->RangeMultiplier(10)->Range(10, 10000);
-BENCHMARK_CAPTURE(camera_bare, incoherent, RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT, false)
-    ->Arg(1000)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(camera_bare, coherent, RTC_INTERSECT_CONTEXT_FLAG_COHERENT, false)
-    ->Arg(1000)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(camera_bare, incoherent_with_shadows, RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT, true)
-    ->Arg(1000)
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(camera_bare, coherent_with_shadows, RTC_INTERSECT_CONTEXT_FLAG_COHERENT, true)
-    ->Arg(1000)
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(camera_bare, incoherent, false, false)->Arg(1000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(camera_bare, coherent, true, false)->Arg(1000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(camera_bare, incoherent_with_shadows, false, true)->Arg(1000)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(camera_bare, coherent_with_shadows, true, true)->Arg(1000)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(camera_ours, rays_alone, false)->Arg(1000)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(camera_ours, with_shadows, true)->Arg(1000)->Unit(benchmark::kMillisecond);
 BENCHMARK(update_bare)->Arg(1000)->Arg(10000)->UseManualTime()->Unit(benchmark::kMillisecond);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Ten experiments in Shoal, in MuJoCo and by closed form.
 //   cross_check [EXPERIMENT ...] [--page FILE]
-// Without --page it prints the tables; with it, it writes docs/models/cross_check.md.
+// Without --page it prints the tables; with it, it writes docs/models/cross_check.md, and cross_check/runs.csv beside
+// it.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <stdexcept>
@@ -16,15 +18,17 @@
 
 namespace {
 
-int write_page(const std::string& path, const std::vector<cross_check::Experiment>& chosen) {
-  std::ofstream out(path);
-  cross_check::write_page(out, cross_check::measure(chosen));
-  out.flush();
-  if (!out) {
-    std::cerr << "cross_check: cannot write '" << path << "'\n";
-    return 1;
-  }
-  return 0;
+/// Writes the page, and its table into the folder of the same name.
+int write_page(const std::filesystem::path& path, const std::vector<cross_check::Experiment>& chosen) {
+  const std::filesystem::path folder = std::filesystem::path(path).replace_extension();
+  std::filesystem::create_directories(folder);
+  std::ofstream page(path), table(folder / "runs.csv");
+  const std::vector<cross_check::Measured> all = cross_check::measure(chosen);
+  cross_check::write_page(page, all);
+  cross_check::write_csv(table, all);
+  if (page.flush() && table.flush()) return 0;
+  std::cerr << "cross_check: cannot write '" << path.string() << "'\n";
+  return 1;
 }
 
 }  // namespace

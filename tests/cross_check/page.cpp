@@ -29,6 +29,16 @@ std::string error_text(double error) {
   return std::abs(error) < rounding ? "< 1e-9" : fmt::format("{:.2g}", error);
 }
 
+/// A number in CSV; empty: none.
+std::string csv_number(double value, int digits) {
+  if (std::isnan(value)) return "";
+  return std::abs(value) < rounding ? "0" : fmt::format("{:.{}g}", value, digits);
+}
+
+std::string csv_text(const std::string& text) {
+  return text.find(',') == std::string::npos ? text : '"' + text + '"';
+}
+
 /// The text in lines of at most 120 characters.
 std::string wrapped(const std::string& text) {
   std::istringstream words(text);
@@ -123,6 +133,11 @@ void write_cost(std::ostream& out, const std::vector<Measured>& all) {
   }
 }
 
+void write_section(std::ostream& out, const Experiment& experiment) {
+  out << fmt::format("\n## {}\n\n{}\n\n    build/release/bin/cross_check {}\n", experiment.title,
+                     wrapped(experiment.text), experiment.name);
+}
+
 constexpr const char* introduction = R"(# Cross-check by another engine
 
 Written by `cross_check --page docs/models/cross_check.md`.
@@ -150,6 +165,9 @@ build/release/bin/cross_check slope    # one
 
 A build that has not found MuJoCo says so when CMake runs, and its tests skip the rows of MuJoCo. The tests
 `CrossCheck` hold Shoal to bars in these experiments.
+
+[runs.csv](cross_check/runs.csv) has the values of every run: `experiment`, `step_ms`, `engine`, `us_per_step` (CPU time
+of a step), `closed_form`, `value`, `error` and `quantity`; an empty value is `none`.
 
 ## Errors
 
@@ -220,9 +238,8 @@ std::vector<Measured> measure(const std::vector<Experiment>& chosen) {
 void write_tables(std::ostream& out, const std::vector<Measured>& all) {
   for (const Measured& measured : all) {
     const Experiment& experiment = measured.experiment;
-    out << fmt::format("\n## {}\n\n{}\n\n    build/release/bin/cross_check {}\n\n", experiment.title,
-                       wrapped(experiment.text), experiment.name);
-    out << "| step ms | engine |";
+    write_section(out, experiment);
+    out << "\n| step ms | engine |";
     for (const Quantity& quantity : experiment.quantities) out << ' ' << quantity.name << " | error |";
     out << " microseconds per step |\n|---:|---|";
     for (std::size_t i = 0; i < experiment.quantities.size(); ++i) out << "---:|---:|";
@@ -246,7 +263,20 @@ void write_page(std::ostream& out, const std::vector<Measured>& all) {
     write_score(out, all, other);
   out << where_better;
   write_cost(out, all);
-  write_tables(out, all);
+  for (const Measured& measured : all) write_section(out, measured.experiment);
+}
+
+void write_csv(std::ostream& out, const std::vector<Measured>& all) {
+  out << "experiment,step_ms,engine,us_per_step,closed_form,value,error,quantity\n";
+  for (const Measured& measured : all)
+    for (const Row& row : measured.rows)
+      for (std::size_t i = 0; i < row.values.size(); ++i) {
+        const Quantity& quantity = measured.experiment.quantities[i];
+        out << fmt::format("{},{:g},{},{:.2f},{},{},{},{}\n", measured.experiment.name, 1000 * row.step_s,
+                           csv_text(name_of(row.method)), 1e6 * row.cpu_s, csv_number(quantity.exact, 6),
+                           csv_number(row.values[i], 6), csv_number(error_of(measured, row, i), 2),
+                           csv_text(quantity.name));
+      }
 }
 
 }  // namespace cross_check

@@ -26,7 +26,9 @@ std::vector<Measured> measure(const std::vector<Experiment>& chosen);
 
 /// A section in Markdown for each experiment.
 void write_tables(std::ostream& out, const std::vector<Measured>& all);
-/// docs/models/cross_check.md, with the tables.
+/// docs/models/cross_check.md: errors, costs and what each experiment is.
 void write_page(std::ostream& out, const std::vector<Measured>& all);
+/// docs/models/cross_check/runs.csv: the values of every run.
+void write_csv(std::ostream& out, const std::vector<Measured>& all);
 
 }  // namespace cross_check

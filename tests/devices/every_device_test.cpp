@@ -9,6 +9,7 @@
 
 #include "sim/device/device_registry.hpp"
 #include "tests/devices/state_fixture.hpp"
+#include "tests/sim/config/parse.hpp"
 
 namespace {
 
@@ -111,6 +112,23 @@ TEST_P(EveryDevice, PublishesWhatItSaysItPublishes) {
     EXPECT_EQ(shoal::validate(*schema, sent.payload, shoal::Finite::any), std::nullopt);
   }
   EXPECT_TRUE(GetParam()->reports() || reports == 0);
+}
+
+/// Each of its presets is made of its keys, inside their ranges: those that are data are YAML beside its source.
+TEST_P(EveryDevice, ReadsItsPresets) {
+  std::vector<sim::ParamInfo> table;
+  sim::ParamReader describing(table);
+  GetParam()->make_params()->read(describing);
+  for (const sim::ParamInfo& info : table) {
+    if (info.key != "preset") continue;
+    for (const std::string& preset : info.choices) {
+      const sim::ConfigNode node = test::parse("preset: " + preset);
+      sim::Diagnostics diagnostics;
+      sim::ParamReader in(node, GetParam()->name, diagnostics);
+      GetParam()->make_params()->read(in);
+      EXPECT_EQ(diagnostics.lines(), std::vector<std::string>{});
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryDevice, testing::ValuesIn(sim::DeviceRegistry::instance().all()),

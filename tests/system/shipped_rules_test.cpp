@@ -42,7 +42,7 @@ double figure_in(const std::string& output, const std::string& name) {
 TEST(ShippedRules, OfCoopUnderwaterHold) {
   const Ended ended = sea_with_mute("");
   EXPECT_EQ(ended.exit_code, 0) << ended.output;
-  // A packet each 8 s whose fix has 0.3 m, with drifting clock and heading: docs/guides/cooperative_navigation.md.
+  // A packet each 8 s whose fix has 0.3 m, with drifting clock and heading: docs/guides/cooperative_accuracy.md.
   EXPECT_NEAR(figure_in(ended.output, "bound.rms_m"), 0.9, 0.2);
   EXPECT_EQ(figure_in(ended.output, "bound.ranges"), figure_in(ended.output, "link.received"));
 }

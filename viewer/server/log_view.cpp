@@ -8,7 +8,7 @@
 
 #include "bridges/base/json_text.hpp"
 #include "viewer/log/scene_names.hpp"
-#include "viewer/page_data/look_request.hpp"
+#include "viewer/page_data/page_request.hpp"
 
 namespace viewer {
 

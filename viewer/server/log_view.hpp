@@ -6,7 +6,6 @@
 
 #include "bridges/log/event_log.hpp"
 #include "viewer/estimates/log_estimates.hpp"
-#include "viewer/log/log_difference.hpp"
 #include "viewer/log/log_distances.hpp"
 #include "viewer/log/log_index.hpp"
 #include "viewer/log/log_poses.hpp"

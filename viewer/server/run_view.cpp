@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "bridges/base/json_text.hpp"
-#include "experiment/drive/drive_error.hpp"
+#include "experiment/drive/drive_profile.hpp"
 #include "experiment/run/version.hpp"
 #include "shoal/message_codec.hpp"
-#include "viewer/server/forms_text.hpp"
+#include "viewer/server/page_drive.hpp"
 
 namespace viewer {
 

@@ -13,8 +13,8 @@
 #include "autonomy/filters/chi_square.hpp"
 #include "bridges/log/event_log.hpp"
 #include "bridges/log/record_file.hpp"
+#include "experiment/score/trajectory/estimate_file.hpp"
 #include "experiment/score/trajectory/mrclam_files.hpp"
-#include "experiment/score/trajectory/tum_file.hpp"
 #include "shoal/message_codec.hpp"
 
 namespace navigation {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "devices/inertial/imu_presets.hpp"
-
 #include <gmock/gmock.h>
 
 #include "devices/inertial/imu.hpp"
@@ -8,6 +6,7 @@
 #include "tests/devices/inertial/imu_fixture.hpp"
 #include "tests/devices/inertial/weightless.hpp"
 #include "tests/devices/world_fixture.hpp"
+#include "tests/sim/config/parse.hpp"
 
 namespace {
 
@@ -32,9 +31,13 @@ TEST(Imu, AKeyWinsOverThePreset) {
 
 TEST(Imu, PresetsHoldTheFiguresOfTheDataSheetsInSi) {
   const auto find = [](const std::string& name) {
-    for (const auto& preset : devices::imu_presets())
-      if (preset.name == name) return preset;
-    throw std::runtime_error(name);
+    const sim::ConfigNode node = test::parse("preset: " + name);
+    sim::Diagnostics diagnostics;
+    sim::ParamReader in(node, "", diagnostics);
+    devices::Imu::Params params;
+    params.read(in);
+    EXPECT_EQ(diagnostics.lines(), std::vector<std::string>{});
+    return params;
   };
   // 0.34 deg/sqrt(h) = 0.34 / 60 deg/sqrt(s), and the sheet's 0.008 deg/s/sqrt(Hz) is about 1.4 times that.
   EXPECT_NEAR(find("adis16470").gyro.random_walk, 9.890e-5, 1e-8);
@@ -45,6 +48,16 @@ TEST(Imu, PresetsHoldTheFiguresOfTheDataSheetsInSi) {
   EXPECT_NEAR(find("stim300").accel.random_walk, 1.167e-3, 1e-6);
   EXPECT_NEAR(find("bmi088").gyro.random_walk, 0.84 * devices::unit::deg_per_sqrt_h, 1e-10);
   EXPECT_NEAR(find("bmi088").accel.random_walk, 2.256e-3, 1e-6);
+  // The decimals of other units than those of the sheets.
+  using namespace devices::unit;
+  EXPECT_DOUBLE_EQ(find("adis16470").accel.misalignment_rad, sim::degrees_to_radians(0.05));
+  EXPECT_DOUBLE_EQ(find("bmi088").gyro.turn_on_bias, 1 * degps);
+  EXPECT_DOUBLE_EQ(find("bmi088").gyro.resolution, 2000 * degps / 32768);
+  EXPECT_DOUBLE_EQ(find("bmi088").accel.random_walk, 230 * ug);
+  EXPECT_DOUBLE_EQ(find("bmi088").accel.resolution, 24 * mps2_per_g / 32768);
+  EXPECT_DOUBLE_EQ(find("vn100").gyro.random_walk, 0.0035 * degps);
+  EXPECT_DOUBLE_EQ(find("vn100").gyro.misalignment_rad, sim::degrees_to_radians(0.05) / 3);
+  EXPECT_DOUBLE_EQ(find("vn100").accel.random_walk, 140 * ug);
 }
 
 }  // namespace

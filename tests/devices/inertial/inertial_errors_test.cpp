@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "devices/inertial/inertial_errors.hpp"
 
-#include "devices/inertial/imu_presets.hpp"
 #include "sim/acoustics/channel.hpp"
 #include "sim/event/event_queue.hpp"
 #include "sim/random/allan.hpp"

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 
 #include "devices/inertial/imu.hpp"
-#include "devices/inertial/imu_presets.hpp"
 #include "shoal/imu_t.hpp"
 #include "tests/devices/inertial/imu_fixture.hpp"
 #include "tests/devices/inertial/weightless.hpp"

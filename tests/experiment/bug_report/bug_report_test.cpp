@@ -188,10 +188,4 @@ TEST_F(BugReportTest, ReportsWhatItCannotUse) {
   EXPECT_THAT(error(), HasSubstr("cannot be written"));
 }
 
-TEST(BugHint, NamesTheCommandThatReportsARun) {
-  EXPECT_EQ(experiment::bug_hint("results/a", "a.lcm"), "to report this: shoal bug results/a --record a.lcm");
-  EXPECT_EQ(experiment::bug_hint("results/a", ""), "to report this: shoal bug results/a");
-  EXPECT_THAT(experiment::bug_hint("", ""), HasSubstr("run it again with --results DIR --record FILE"));
-}
-
 }  // namespace

@@ -222,6 +222,7 @@ TEST(ClockDiscipline, ThePresetsCoastAsTheyClaim) {
     const auto node = sim::parse_config_text(std::string("preset: ") + preset, "test", diagnostics);
     sim::ParamReader in(node, "", diagnostics);
     config.read(in);
+    EXPECT_EQ(diagnostics.lines(), std::vector<std::string>{});
     config.temperature_ppm_per_C = 0;
     for (const int coast_s : {10, 600, 3600}) {
       const double ratio = rms_over_claim(config, 300, coast_s, 50e-9);
