@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "autonomy/filters/chi_square.hpp"
 #include "autonomy/filters/odometer.hpp"
 #include "autonomy/filters/pose2.hpp"
 
@@ -17,7 +18,7 @@ class Ekf {
     double across_std_m = 0.01;            ///< sideways slip after 1 m
     double yaw_per_turn_std_rad = 0.04;    ///< after a turn of 1 rad
     double yaw_per_meter_std_rad = 0.015;  ///< after 1 m
-    double gate = 13.82;                   ///< squared Mahalanobis distance: 99.9 % of chi-square with 2 degrees
+    double gate = chi_square_999_2;        ///< squared Mahalanobis distance
     int max_refusals = 10;                 ///< consecutive ones, before the estimate itself is considered wrong
   };
 

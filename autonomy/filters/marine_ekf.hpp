@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "autonomy/filters/chi_square.hpp"
 #include "autonomy/filters/pose2.hpp"
 
 namespace autonomy {
@@ -47,9 +48,9 @@ class MarineEkf {
     /// In a filter of two states the biases are modeled as noise that changes at this interval.
     double bias_as_noise_s = 60;
 
-    double range_gate = 10.83;     ///< squared innovation over its variance: 99.9 % of chi-square with 1 degree
-    double position_gate = 13.82;  ///< the same with 2 degrees of freedom
-    int max_refusals = 5;          ///< consecutive ones, before a state is considered wrong instead of the measurement
+    double range_gate = chi_square_999_1;     ///< squared innovation over its variance
+    double position_gate = chi_square_999_2;  ///< the same
+    int max_refusals = 5;  ///< consecutive ones, before a state is considered wrong instead of the measurement
   };
   struct Range {
     int beacon = 0;          ///< identifier of the beacon

@@ -18,7 +18,13 @@ class Odometer {
   explicit Odometer(const Pose2& start) : start_(start) {}
 
   /// `p_0`, `theta_rad`: pose relative to the start.  Returns the move since the last call.
-  Increment update(const Vector2d& p_0, double theta_rad);
+  Increment update(const Vector2d& p_0, double theta_rad) {
+    const Vector2d moved = turned(p_0 - p_0_, -theta_rad_);
+    const Increment increment{moved.x(), moved.y(), theta_rad - theta_rad_};
+    p_0_ = p_0;
+    theta_rad_ = theta_rad;
+    return increment;
+  }
   /// Returns start pose plus odometry: the pose of the rover by dead reckoning only.
   Pose2 pose() const { return {start_.p_W + turned(p_0_, start_.yaw_rad), start_.yaw_rad + theta_rad_}; }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "autonomy/filters/chi_square.hpp"
 #include "autonomy/filters/pose2.hpp"
 
 namespace autonomy {
@@ -36,8 +37,8 @@ class WallEkf {
     double speed_noise_mpsprtHz = 0.1;     ///< of the speed through the water
     double heading_noise_radprtHz = 1e-3;  ///< drift of the gyro
     double current_noise_mpsprtHz = 5e-3;
-    double current_std_mps = 0.3;  ///< at the start
-    double gate = 10.83;           ///< of a squared normalized innovation: 99.9 % of one degree of freedom
+    double current_std_mps = 0.3;    ///< at the start
+    double gate = chi_square_999_1;  ///< of a squared normalized innovation
   };
   using State = Eigen::Matrix<double, 5, 1>;
   using Covariance = Eigen::Matrix<double, 5, 5>;

@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "sim/config/file_access.hpp"
 #include "sim/config/param_reader.hpp"
-#include "sim/config/shipped_files.hpp"
 #include "sim/image/image_file.hpp"
 
 namespace autonomy {

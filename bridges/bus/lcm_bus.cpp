@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/bus/lcm_bus.hpp"
 
+#include <lcm/lcm.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
@@ -22,6 +23,7 @@
 #include "sim/base/log.hpp"
 
 namespace bridges {
+
 /// Parts of LcmBus; not in an unnamed namespace, because LcmBus::Threads contains it.
 namespace lcm_bus {
 
@@ -368,6 +370,11 @@ const std::string& LcmBus::url() const {
 
 bool LcmBus::connected() const {
   return threads_->connected;
+}
+
+std::string lcm_version() {
+  return std::to_string(LCM_MAJOR_VERSION) + "." + std::to_string(LCM_MINOR_VERSION) + "." +
+         std::to_string(LCM_MICRO_VERSION);
 }
 
 }  // namespace bridges

@@ -58,4 +58,7 @@ class LcmBus final : public sim::Bus {
   std::unique_ptr<Threads> threads_;
 };
 
+/// Returns the version of the LCM library, such as `1.3.1`.
+std::string lcm_version();
+
 }  // namespace bridges

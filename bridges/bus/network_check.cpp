@@ -3,15 +3,13 @@
 
 #include <arpa/inet.h>
 #include <dirent.h>
-#include <fcntl.h>
 #include <ifaddrs.h>
 #include <net/if.h>
-#include <poll.h>
-#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -19,8 +17,9 @@
 #include <optional>
 #include <set>
 #include <sstream>
+#include <system_error>
 
-#include "bridges/bus/reach_check.hpp"
+#include "bridges/base/forked_work.hpp"
 #include "bridges/lcm/lcm_connection.hpp"
 #include "bridges/lcm/lcm_listener.hpp"
 
@@ -256,24 +255,6 @@ int round_trip(const std::string& url, std::chrono::milliseconds time_limit) {
   return 1;
 }
 
-/// Returns everything written until the end, or until the deadline.
-std::string read_until(int fd, std::chrono::steady_clock::time_point deadline, bool& ended) {
-  std::string text;
-  std::array<char, 4096> buffer;
-  ended = false;
-  while (!ended) {
-    const auto left =
-        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
-    if (left.count() <= 0 || !wait_readable(fd, -1, left)) break;
-    const auto got = read(fd, buffer.data(), buffer.size());
-    if (got <= 0)
-      ended = true;
-    else if (text.size() < 10'000)
-      text.append(buffer.data(), static_cast<std::size_t>(got));
-  }
-  return text;
-}
-
 std::string last_line(std::string text) {
   while (!text.empty() && text.back() == '\n') text.pop_back();
   return text.substr(text.rfind('\n') + 1);
@@ -281,46 +262,33 @@ std::string last_line(std::string text) {
 
 Finding check_round_trip(const std::string& url, std::chrono::milliseconds time_limit) {
   Finding finding{"round trip", Verdict::bad, "", {}};
-  std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) {
-    finding.text = "no file descriptor is available for the test";
+  ForkedWork done;
+  try {
+    const auto test = [&](int to) {
+      dup2(to, STDERR_FILENO);
+      dup2(to, STDOUT_FILENO);
+      return round_trip(url, time_limit);
+    };
+    done = run_forked(test, std::chrono::steady_clock::now() + time_limit);
+  } catch (const std::system_error& error) {
+    const bool no_file = error.code().value() == EMFILE || error.code().value() == ENFILE;
+    finding.text = no_file ? "no file descriptor is available for the test" : "cannot start a process for the test";
     return finding;
-  }
-  // Run the test in a child process.
-  const pid_t child = fork();
-  if (child == 0) {
-    dup2(ends[1], STDERR_FILENO);
-    dup2(ends[1], STDOUT_FILENO);
-    // Use _exit: the buffers and handlers of the parent must not be processed by the child.
-    _exit(round_trip(url, time_limit));
-  }
-  close(ends[1]);
-  // Read its output, and end it at the time limit.
-  bool ended = false;
-  std::string reported;
-  if (child > 0) reported = read_until(ends[0], std::chrono::steady_clock::now() + time_limit, ended);
-  close(ends[0]);
-  if (child < 0) {
-    finding.text = "cannot start a process for the test";
-    return finding;
-  }
-  if (!ended) kill(child, SIGKILL);
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   // Interpret the result.
-  if (!ended) {
+  if (!done.output) {
     finding.text = "no test message was received within " + std::to_string(time_limit.count()) +
                    " ms; a firewall may drop multicast on UDP";
     finding.commands = {"iptables -I INPUT -p udp -d 224.0.0.0/4 -j ACCEPT",
                         "iptables -I OUTPUT -p udp -d 224.0.0.0/4 -j ACCEPT"};
-  } else if (WIFEXITED(status) && WEXITSTATUS(status) == 0) {
+  } else if (WIFEXITED(done.status) && WEXITSTATUS(done.status) == 0) {
     finding.verdict = Verdict::ok;
     finding.text = "a test message was received";
-  } else if (WIFSIGNALED(status)) {
-    finding.text = "liblcm stopped with signal " + std::to_string(WTERMSIG(status)) + ": " + last_line(reported);
+  } else if (WIFSIGNALED(done.status)) {
+    finding.text =
+        "liblcm stopped with signal " + std::to_string(WTERMSIG(done.status)) + ": " + last_line(*done.output);
   } else {
-    finding.text = last_line(reported);
+    finding.text = last_line(*done.output);
   }
   return finding;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -21,5 +22,22 @@ struct Finding {
 /// Only for a program without other threads.
 std::vector<Finding> check_network(const std::string& url = {},
                                    std::chrono::milliseconds time_limit = std::chrono::milliseconds(3000));
+
+/// Returns whether messages on this bus may come from or go to other machines: for multicast with a ttl above 0, and
+/// for tcpq, whose server may be reachable from anywhere.  Returns true when in doubt.  `resolved_url`: result of
+/// resolve_lcm_url().  Programs that forward messages from one bus to another are not detected.
+bool leaves_machine(const std::string& resolved_url);
+
+/// Numbers of sockets on a port that other machines can reach, from a table such as /proc/net/udp or /proc/net/tcp.
+struct OpenSockets {
+  int everywhere = 0;  ///< bound to 0.0.0.0
+  int elsewhere = 0;   ///< bound to another address that is neither loopback nor multicast
+};
+/// Counts the sockets of a port in a table.  `listening_only`: only TCP sockets that wait for connections.
+OpenSockets open_sockets(std::istream& table, int port, bool listening_only);
+
+/// Checks whether other machines can reach the bus of this URL, from its ttl, the addresses to which sockets on its
+/// port are bound, and its server.  For `shoal doctor`.
+Finding check_reach(const std::string& resolved_url);
 
 }  // namespace bridges

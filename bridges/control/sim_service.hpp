@@ -13,7 +13,6 @@
 #include "bridges/control/other_simulators.hpp"
 #include "bridges/control/run_audit.hpp"
 #include "bridges/control/spawned_vehicles.hpp"
-#include "bridges/control/time_machine.hpp"
 #include "bridges/lockstep/lockstep_service.hpp"
 #include "shoal/sim_control_request_t.hpp"
 #include "sim/bus/bus.hpp"
@@ -21,6 +20,15 @@
 #include "sim/world/world.hpp"
 
 namespace bridges {
+
+/// Interface that executes requests about simulated time: speed, pause, rewind and restore.
+class TimeMachine {
+ public:
+  virtual ~TimeMachine() = default;
+  /// Returns the result of a request; none when the command is unknown.  Throws std::runtime_error with the reason when
+  /// it is refused.
+  virtual std::optional<std::string> execute(const std::string& command, const std::string& text, double value) = 0;
+};
 
 /// Optional objects used by a service; all must outlive it.
 struct ServiceLinks {

@@ -30,96 +30,59 @@ bool is_examined(std::uint64_t seen) {
 // --- Functions for all threads
 
 void Protocol::introduce(ServerInfo info) {
-  {
-    const std::lock_guard lock(box_mutex_);
-    box_.info = std::move(info);
-  }
-  wake();
+  exchange_.put([&](Box& box) { box.info = std::move(info); });
 }
 
 void Protocol::message(std::int64_t utime, std::string_view channel, std::span<const std::byte> payload) {
   const auto fingerprint = static_cast<std::uint64_t>(shoal::fingerprint(payload));
   const bool kept = is_kept(channel);
-  {
-    const std::lock_guard lock(box_mutex_);
+  exchange_.put([&](Box& box) {
     // Decide whether it is of use
     auto known = channels_.find(channel);
     const bool is_new = known == channels_.end() || known->second.fingerprint != fingerprint;
     if (known == channels_.end()) {
-      if (channels_.size() >= max_channels) return;
+      if (channels_.size() >= max_channels) return false;
       known = channels_.emplace(channel, Channel{}).first;
     }
     Channel& state = known->second;
     if (is_new) state.fingerprint = fingerprint;
     const bool examined = is_new || (clients() > 0 && is_examined(state.seen));
     ++state.seen;
-    if (!kept && !state.subscribed && !examined) return;
+    if (!kept && !state.subscribed && !examined) return false;
 
     // The thread of the server empties the box at once unless the machine is overloaded
     const bool full =
-        box_.bytes + payload.size() > max_undelivered_bytes || box_.entries.size() >= max_undelivered_messages;
+        box.bytes + payload.size() > max_undelivered_bytes || box.entries.size() >= max_undelivered_messages;
     if (full && !kept) {
-      if (state.subscribed) ++box_.dropped;
-      return;
+      if (state.subscribed) ++box.dropped;
+      return false;
     }
-    box_.bytes += payload.size();
-    box_.entries.push_back({utime, std::string(channel), {payload.begin(), payload.end()}});
-  }
-  wake();
+    box.bytes += payload.size();
+    box.entries.push_back({utime, std::string(channel), {payload.begin(), payload.end()}});
+    return true;
+  });
 }
 
 void Protocol::show_time(std::int64_t utime) {
-  if (clients() == 0) return;
-  {
-    const std::lock_guard lock(box_mutex_);
-    box_.time = utime;
-  }
-  wake();
+  if (clients() > 0) exchange_.put([&](Box& box) { box.time = utime; });
 }
 
 void Protocol::jump(std::int64_t utime) {
   if (clients() == 0) return;
-  {
-    const std::lock_guard lock(box_mutex_);
+  exchange_.put([&](Box& box) {
     // Several jumps without a message between are one.
-    if (!box_.entries.empty() && box_.entries.back().channel.empty()) box_.entries.pop_back();
-    box_.entries.push_back({utime, "", {}});
-    box_.time.reset();
-  }
-  wake();
+    if (!box.entries.empty() && box.entries.back().channel.empty()) box.entries.pop_back();
+    box.entries.push_back({utime, "", {}});
+    box.time.reset();
+  });
 }
 
 void Protocol::set_state(const PlaybackState& state) {
-  if (clients() == 0) return;
-  {
-    const std::lock_guard lock(box_mutex_);
-    box_.state = state;
-  }
-  wake();
-}
-
-std::optional<Request> Protocol::take_request() {
-  if (!has_requests_.load()) return std::nullopt;
-  const std::lock_guard lock(request_mutex_);
-  if (requests_.empty()) return std::nullopt;
-  Request request = std::move(requests_.front());
-  requests_.pop_front();
-  has_requests_ = !requests_.empty();
-  const auto waiting = waiting_requests_.find(request.client);
-  if (waiting != waiting_requests_.end() && --waiting->second == 0) waiting_requests_.erase(waiting);
-  return request;
+  if (clients() > 0) exchange_.put([&](Box& box) { box.state = state; });
 }
 
 void Protocol::reply(const Request& request, bool ok, std::string text) {
-  {
-    const std::lock_guard lock(box_mutex_);
-    box_.replies.push_back({request, ok, std::move(text)});
-  }
-  wake();
-}
-
-void Protocol::wake() {
-  if (!awake_.exchange(true)) post_([this] { deliver(); });
+  exchange_.put([&](Box& box) { box.replies.push_back({request, ok, std::move(text)}); });
 }
 
 // --- Functions of the thread of the server
@@ -137,15 +100,15 @@ bool Protocol::admits(std::string_view query) const {
 
 std::unique_ptr<WebSession> Protocol::open(WebLink& link) {
   auto session = std::make_unique<Session>(*this, link);
-  sessions_.push_back(session.get());
+  exchange_.add(*session);
   session->time_ = time_;
-  ++clients_;
+  exchange_.count_client(1);
   return session;
 }
 
 void Protocol::left(const Session& session) {
-  sessions_.erase(std::find(sessions_.begin(), sessions_.end(), &session));
-  if (--clients_ == 0) time_.reset();  // it is not set any more
+  exchange_.remove(session);
+  if (exchange_.count_client(-1) == 0) time_.reset();  // it is not set any more
 }
 
 void Protocol::warn_of_drops() {
@@ -155,25 +118,16 @@ void Protocol::warn_of_drops() {
       "clients are not reported here)");
 }
 
-void Protocol::deliver() {
-  // Take what the other threads have sent
-  awake_ = false;
-  Box box;
-  {
-    const std::lock_guard lock(box_mutex_);
-    std::swap(box, box_);
-  }
-
-  // Pass it on
+void Protocol::deliver(Box box) {
   if (box.info) info_ = std::move(box.info);
   for (Entry& entry : box.entries) process(entry);
   if (box.time) {
     time_ = box.time;
-    for (Session* session : sessions_) session->time_ = box.time;
+    for (Session* session : exchange_.sessions()) session->time_ = box.time;
   }
   if (box.state) process(*box.state);
   for (const Reply& reply : box.replies) process(reply);
-  for (Session* session : sessions_) {
+  for (Session* session : exchange_.sessions()) {
     session->count_dropped(box.dropped);
     session->link_.wake();
   }
@@ -194,7 +148,7 @@ void Protocol::encode(const Entry& entry) {
 /// Viewers take an earlier time as a jump and forget what they have, so that it comes first.
 void Protocol::process_jump(std::int64_t utime) {
   time_ = utime;
-  for (Session* session : sessions_) {
+  for (Session* session : exchange_.sessions()) {
     session->jump(utime);
     for (const auto& [topic, id] : session->by_topic_)
       if (table_.topics()[topic].latched) send_latched(*session, topic);
@@ -205,7 +159,7 @@ void Protocol::process(const PlaybackState& state) {
   const bool changed = state.status != state_.status || state.speed != state_.speed;
   state_ = state;
   if (!changed) return;
-  for (Session* session : sessions_) {
+  for (Session* session : exchange_.sessions()) {
     session->show_parameters(state);
     if (session->gets_playback_) session->answer(playback_data(state, false, ""), false);
   }
@@ -213,10 +167,11 @@ void Protocol::process(const PlaybackState& state) {
 
 void Protocol::process(const Reply& reply) {
   const Request& request = reply.request;
-  const auto found = std::find_if(sessions_.begin(), sessions_.end(),
+  const std::vector<Session*>& sessions = exchange_.sessions();
+  const auto found = std::find_if(sessions.begin(), sessions.end(),
                                   [&](const Session* each) { return each->link_.number() == request.client; });
   // The client may have closed its connection while the run answered.
-  if (found == sessions_.end()) return;
+  if (found == sessions.end()) return;
   Session& session = **found;
   switch (request.kind) {
     case Request::Kind::service:
@@ -247,7 +202,7 @@ bool Protocol::take(const ros2::Topic& topic, std::span<const std::byte> bytes) 
     target_->session->push(topic, present_->utime, payload, present_->channel);
     return true;
   }
-  for (Session* session : sessions_)
+  for (Session* session : exchange_.sessions())
     if (session->has_subscribed(topic.number)) session->push(topic, present_->utime, payload, present_->channel);
   return true;
 }
@@ -274,8 +229,9 @@ void Protocol::update_wanted(const std::string& channel) {
   const std::set<std::size_t>& topics = topics_of_channel_[channel];
   const bool subscribed =
       std::any_of(topics.begin(), topics.end(), [this](std::size_t topic) { return subscribers_[topic] > 0; });
-  const std::lock_guard lock(box_mutex_);
-  if (const auto known = channels_.find(channel); known != channels_.end()) known->second.subscribed = subscribed;
+  exchange_.with_box([&](Box&) {
+    if (const auto known = channels_.find(channel); known != channels_.end()) known->second.subscribed = subscribed;
+  });
 }
 
 void Protocol::send_latched(Session& session, std::size_t topic) {
@@ -283,16 +239,6 @@ void Protocol::send_latched(Session& session, std::size_t topic) {
   for (const std::string& channel : channels_of_topic_[topic])
     if (const auto last = last_.find(channel); last != last_.end()) encode(last->second);
   target_.reset();
-}
-
-bool Protocol::add_request(Request request) {
-  const std::lock_guard lock(request_mutex_);
-  std::size_t& waiting = waiting_requests_[request.client];
-  if (waiting >= max_waiting_requests) return false;
-  ++waiting;
-  requests_.push_back(std::move(request));
-  has_requests_ = true;
-  return true;
 }
 
 }  // namespace bridges::foxglove

@@ -4,11 +4,9 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <span>
@@ -19,6 +17,7 @@
 
 #include "bridges/foxglove/foxglove_text.hpp"
 #include "bridges/ros2/topic_table.hpp"
+#include "bridges/web/web_exchange.hpp"
 #include "bridges/web/web_protocol.hpp"
 
 namespace bridges::foxglove {
@@ -42,7 +41,7 @@ struct Request {
 /// Subprotocols `foxglove.sdk.v1` and `foxglove.websocket.v1`, which are the same, without the network: passes the
 /// messages of LCM channels on as topics in CDR (ros2::TopicTable), each only while a client has subscribed to it.
 ///
-/// Its functions for all threads only put something into a box under a lock and wake the thread of the server, in which
+/// Its functions for all threads only put something into the box of a WebExchange; in the thread of the server
 /// deliver() encodes it.  A client that does not read loses its oldest messages, and gets a warning with their number.
 class Protocol final : public WebProtocol, private ros2::TopicSink {
  public:
@@ -55,10 +54,8 @@ class Protocol final : public WebProtocol, private ros2::TopicSink {
   static constexpr std::size_t max_waiting_texts = 1000;                       ///< answers to one client
   static constexpr std::size_t max_channels = 65'535;                          ///< further LCM channels have no topics
 
-  /// Function that runs work in the thread of the server.
-  using Post = std::function<void(std::function<void()>)>;
-
-  explicit Protocol(Post post) : post_(std::move(post)) {}
+  explicit Protocol(WebPost post)
+      : exchange_([this](Box box) { deliver(std::move(box)); }, max_waiting_requests, std::move(post)) {}
   /// Demands a token in the address, `?t=TOKEN`; before the first client.
   void require_token(std::function<bool(std::string_view)> is_token) { is_token_ = std::move(is_token); }
 
@@ -69,7 +66,7 @@ class Protocol final : public WebProtocol, private ros2::TopicSink {
   // Thread-safe:
 
   /// Returns the number of clients.
-  int clients() const { return clients_.load(); }
+  int clients() const { return exchange_.clients(); }
   /// Returns the number of subscriptions so far: it increases with each.
   std::uint64_t subscriptions() const { return subscriptions_.load(); }
   /// Introduces the server to later clients, who wait for it.
@@ -83,7 +80,7 @@ class Protocol final : public WebProtocol, private ros2::TopicSink {
   /// Sets what clients know of pause and speed.
   void set_state(const PlaybackState& state);
   /// Returns the next request, or std::nullopt.
-  std::optional<Request> take_request();
+  std::optional<Request> take_request() { return exchange_.take_request(); }
   /// Answers a request; without effect when the client has left.
   void reply(const Request& request, bool ok, std::string text);
 
@@ -103,10 +100,8 @@ class Protocol final : public WebProtocol, private ros2::TopicSink {
     std::string text;
   };
   /// Input of other threads since deliver().
-  struct Box {
+  struct Box : WebBox {
     std::vector<Entry> entries;
-    std::size_t bytes = 0;
-    std::uint64_t dropped = 0;
     std::optional<ServerInfo> info;
     std::optional<std::int64_t> time;
     std::optional<PlaybackState> state;
@@ -124,8 +119,7 @@ class Protocol final : public WebProtocol, private ros2::TopicSink {
     std::size_t topic;
   };
 
-  void wake();
-  void deliver();
+  void deliver(Box box);
   void process(Entry& entry);
   void process_jump(std::int64_t utime);
   void process(const Reply& reply);
@@ -138,30 +132,20 @@ class Protocol final : public WebProtocol, private ros2::TopicSink {
   void count_subscription(std::size_t topic, int change);
   void update_wanted(const std::string& channel);
   void send_latched(Session& session, std::size_t topic);
-  bool add_request(Request request);
   void left(const Session& session);
   /// Warns once that a client does not get all messages.
   void warn_of_drops();
 
-  const Post post_;
   std::function<bool(std::string_view)> is_token_;  // empty: none is needed
-  std::atomic<int> clients_ = 0;
   std::atomic<std::uint64_t> subscriptions_ = 0;
-  std::atomic<bool> awake_ = false;
-  std::mutex box_mutex_;
-  Box box_;
-  std::map<std::string, Channel, std::less<>> channels_;
-  std::mutex request_mutex_;
-  std::deque<Request> requests_;
-  std::map<int, std::size_t> waiting_requests_;  // by client
-  std::atomic<bool> has_requests_ = false;
+  WebExchange<Box, Request, Session> exchange_;
+  std::map<std::string, Channel, std::less<>> channels_;  // under the lock of the box
 
   // Members of the server thread:
   std::optional<ServerInfo> info_;
   PlaybackState state_;
   std::optional<std::int64_t> time_;
   ros2::TopicTable table_;
-  std::vector<Session*> sessions_;
   bool warned_of_drops_ = false;
   std::vector<int> subscribers_;  // by topic
   std::vector<std::set<std::string>> channels_of_topic_;

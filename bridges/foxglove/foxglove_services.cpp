@@ -7,7 +7,8 @@
 #include <cstring>
 #include <vector>
 
-#include "bridges/ros2/cdr_writer.hpp"
+#include "bridges/base/json_text.hpp"
+#include "bridges/ros2/cdr.hpp"
 #include "bridges/ros2/ros2_schema.hpp"
 #include "bridges/web/client_json.hpp"
 #include "bridges/web/web_error.hpp"
@@ -112,8 +113,7 @@ ServiceArgument read_request(const Service& service, std::string_view encoding, 
 }
 
 std::string response(std::string_view encoding, bool success, std::string_view message) {
-  if (encoding == "json")
-    return Json{{"success", success}, {"message", message}}.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (encoding == "json") return json_text({{"success", success}, {"message", message}});
   std::vector<std::byte> cdr;
   ros2::CdrWriter out(cdr);
   out.put(static_cast<std::uint8_t>(success));

@@ -107,7 +107,7 @@ void Session::call(ServiceCall call) {
     made.call = {call.service, call.call, call.encoding, ""};
     made.client = link_.number();
     // The answer comes later, from the thread that simulates.
-    if (!protocol_.add_request(std::move(made))) refuse("too many requests of this client are waiting");
+    if (!protocol_.exchange_.add_request(std::move(made))) refuse("too many requests of this client are waiting");
   } catch (const WebError& error) {
     refuse(error.what());
   }
@@ -145,7 +145,7 @@ void Session::set_parameters(const ClientText& message) {
 
 void Session::request(Request request) {
   request.client = link_.number();
-  if (!protocol_.add_request(std::move(request)))
+  if (!protocol_.exchange_.add_request(std::move(request)))
     report(StatusLevel::error,
            "too many requests: " + std::to_string(Protocol::max_waiting_requests) + " of this client are waiting");
 }
@@ -167,32 +167,24 @@ void Session::push(const ros2::Topic& topic, std::int64_t utime, const Bytes& pa
   if (topic.latched) return push_latched(std::move(data));
   const std::size_t bytes = payload->size() + message_bytes;
   while (!data_.empty() &&
-         (data_.size() >= Protocol::max_queued_messages || data_bytes_ + bytes > Protocol::max_queued_bytes)) {
-    data_bytes_ -= data_.front().payload->size() + message_bytes;
-    data_.pop_front();
+         (data_.size() >= Protocol::max_queued_messages || data_.bytes() + bytes > Protocol::max_queued_bytes)) {
+    data_.pop();
     count_dropped(1);
   }
-  data_bytes_ += bytes;
-  data_.push_back(std::move(data));
+  data_.push(std::move(data), bytes);
 }
 
 /// A newer message of the same channel replaces the one that waits, except for assets, which add to a scene.
 void Session::push_latched(Data data) {
-  const auto drop = [this](std::deque<Data>::iterator at) {
-    latched_bytes_ -= at->payload->size() + message_bytes;
-    latched_.erase(at);
-  };
-  const auto same = std::find_if(latched_.begin(), latched_.end(), [&](const Data& other) {
+  latched_.remove([&](const Data& other) {
     return other.channel == data.channel && other.subscription == data.subscription && data.channel != "sim.asset";
   });
-  if (same != latched_.end()) drop(same);
   const std::size_t bytes = data.payload->size() + message_bytes;
-  while (!latched_.empty() && latched_bytes_ + bytes > Protocol::max_latched_bytes) {
-    drop(latched_.begin());
+  while (!latched_.empty() && latched_.bytes() + bytes > Protocol::max_latched_bytes) {
+    latched_.pop();
     count_dropped(1);
   }
-  latched_bytes_ += bytes;
-  latched_.push_back(std::move(data));
+  latched_.push(std::move(data), bytes);
 }
 
 void Session::count_dropped(std::uint64_t count) {
@@ -203,7 +195,6 @@ void Session::count_dropped(std::uint64_t count) {
 void Session::jump(std::int64_t utime) {
   data_.clear();
   latched_.clear();
-  data_bytes_ = latched_bytes_ = 0;
   time_ = utime;
 }
 
@@ -234,11 +225,11 @@ bool Session::next(WebFrame& frame) {
   }
   if (std::string text = next_drop_report(); !text.empty()) return give(std::move(text), true);
   if (time_) return give(time_data(*std::exchange(time_, std::nullopt)), false);
-  for (const auto& [queue, bytes] : {std::pair{&latched_, &latched_bytes_}, {&data_, &data_bytes_}})
+  for (WebQueue<Data>* const queue : {&latched_, &data_})
     while (!queue->empty()) {
-      const bool is_subscribed = topic_of_.contains(queue->front().subscription);
-      std::string message = take(*queue, *bytes);
-      if (is_subscribed) return give(std::move(message), false);
+      const Data data = queue->pop();
+      if (topic_of_.contains(data.subscription))
+        return give(message_data(data.subscription, data.utime, *data.payload), false);
     }
   return false;
 }
@@ -263,13 +254,6 @@ std::string Session::next_drop_report() {
                      "Send buffer limit reached: " + std::to_string(std::exchange(dropped_, 0)) +
                          " messages were dropped, because they come faster than this client reads them",
                      "dropped");
-}
-
-std::string Session::take(std::deque<Data>& queue, std::size_t& bytes) {
-  const Data data = std::move(queue.front());
-  queue.pop_front();
-  bytes -= data.payload->size() + message_bytes;
-  return message_data(data.subscription, data.utime, *data.payload);
 }
 
 }  // namespace bridges::foxglove

@@ -57,7 +57,6 @@ class Session final : public WebSession {
   void show_parameters(const PlaybackState& state);
   std::string next_advertisement();
   std::string next_drop_report();
-  static std::string take(std::deque<Data>& queue, std::size_t& bytes);
 
   Protocol& protocol_;
   WebLink& link_;
@@ -73,8 +72,7 @@ class Session final : public WebSession {
   };
   std::deque<Answer> answers_;
   std::optional<std::int64_t> time_;
-  std::deque<Data> latched_, data_;
-  std::size_t latched_bytes_ = 0, data_bytes_ = 0;
+  WebQueue<Data> latched_, data_;
   std::uint64_t dropped_ = 0;
   std::chrono::steady_clock::time_point next_drop_report_{};
 };

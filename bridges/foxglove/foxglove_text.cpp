@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "bridges/base/json_text.hpp"
 #include "bridges/foxglove/foxglove_services.hpp"
 
 namespace bridges::foxglove {
@@ -14,11 +15,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::int64_t us_per_s = 1'000'000, ns_per_us = 1000;
-
-/// Names in a world need not be UTF-8: wrong bytes are replaced.
-std::string text_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 Json time_json(std::int64_t utime) {
   const std::int64_t us = std::max<std::int64_t>(0, utime);
@@ -79,13 +75,13 @@ std::string server_info_text(const ServerInfo& info) {
     message["dataStartTime"] = time_json(info.start_us);
     message["dataEndTime"] = time_json(info.end_us);
   }
-  return text_of(message);
+  return json_text(message);
 }
 
 std::string status_text(StatusLevel level, std::string_view message, std::string_view id) {
   Json json{{"op", "status"}, {"level", static_cast<int>(level)}, {"message", message}};
   if (!id.empty()) json["id"] = id;
-  return text_of(json);
+  return json_text(json);
 }
 
 std::string advertise_text(std::span<const ros2::Topic* const> topics) {
@@ -97,7 +93,7 @@ std::string advertise_text(std::span<const ros2::Topic* const> topics) {
     if (!topic->lcm_type.empty()) channel["metadata"]["lcm_type"] = topic->lcm_type;
     channels.push_back(std::move(channel));
   }
-  return text_of({{"op", "advertise"}, {"channels", std::move(channels)}});
+  return json_text({{"op", "advertise"}, {"channels", std::move(channels)}});
 }
 
 std::string advertise_services_text() {
@@ -108,11 +104,11 @@ std::string advertise_services_text() {
                    {"type", each.type},
                    {"request", part_json(each, "Request", request_schema(each))},
                    {"response", part_json(each, "Response", response_schema)}});
-  return text_of({{"op", "advertiseServices"}, {"services", std::move(all)}});
+  return json_text({{"op", "advertiseServices"}, {"services", std::move(all)}});
 }
 
 std::string service_failure_text(std::uint32_t service, std::uint32_t call, std::string_view message) {
-  return text_of({{"op", "serviceCallFailure"}, {"serviceId", service}, {"callId", call}, {"message", message}});
+  return json_text({{"op", "serviceCallFailure"}, {"serviceId", service}, {"callId", call}, {"message", message}});
 }
 
 std::string parameters_text(const PlaybackState& state, const std::vector<std::string>& names,
@@ -126,7 +122,7 @@ std::string parameters_text(const PlaybackState& state, const std::vector<std::s
   if (is_asked_for("speed")) parameters.push_back({{"name", "speed"}, {"value", state.speed}, {"type", "float64"}});
   Json message{{"op", "parameterValues"}, {"parameters", std::move(parameters)}};
   if (id) message["id"] = *id;
-  return text_of(message);
+  return json_text(message);
 }
 
 std::string message_data(std::uint32_t subscription, std::int64_t utime, std::string_view payload) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <linux/filter.h>
+
 #include <atomic>
 #include <chrono>
 #include <cstddef>
@@ -74,5 +76,11 @@ class UdpInbox {
   std::vector<Call> called_;  // used by the handling thread only
   std::uint64_t unmatched_ = 0, unmatched_before_ = 0;
 };
+
+/// Returns a socket filter (classic BPF, for a UDP socket) that passes the datagrams a receiver of these channels may
+/// need: messages on them, fragments that do not name their channel, and datagrams that are too short to classify.  It
+/// compares a hash of the first 16 bytes of the channel, so that a few other messages also pass; it never drops a
+/// message on these channels.  Empty when there are too many channels for one program.
+std::vector<sock_filter> channel_filter(const std::vector<std::string>& channels);
 
 }  // namespace bridges

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -10,11 +11,26 @@
 
 #include "bridges/base/file_descriptor.hpp"
 #include "bridges/lcm/lcm_reassembly.hpp"
-#include "bridges/lcm/own_addresses.hpp"
 
 struct sock_filter;
 
 namespace bridges {
+
+/// IPv4 addresses of this machine.
+class OwnAddresses {
+ public:
+  OwnAddresses();
+
+  /// Returns whether `address` (host byte order) belongs to this machine, as all of 127.0.0.0/8 do.  For an unknown
+  /// address the list is read again, at most once a second, because interfaces can change.
+  bool contain(std::uint32_t address);
+
+ private:
+  void read();
+
+  std::vector<std::uint32_t> addresses_;
+  std::chrono::steady_clock::time_point read_at_;
+};
 
 /// Receiving socket of a udpm bus, used instead of that of liblcm, because liblcm 1.3.1 does not validate the fields of
 /// datagrams.  It is bound to the multicast group: datagrams to the address of this machine, or to another group on

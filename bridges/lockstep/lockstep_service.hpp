@@ -20,7 +20,6 @@
 #include "bridges/lockstep/channel_use.hpp"
 #include "bridges/lockstep/client_requests.hpp"
 #include "bridges/lockstep/control_guard.hpp"
-#include "bridges/lockstep/lockstep_summary.hpp"
 #include "bridges/lockstep/own_pause.hpp"
 #include "bridges/lockstep/record_gaps.hpp"
 #include "shoal/sim_ack_t.hpp"
@@ -33,6 +32,20 @@
 #include "sim/world/world.hpp"
 
 namespace bridges {
+
+/// Summary of a client in the lockstep of a run.
+struct LockstepSummary {
+  std::string client;
+  std::int64_t ticks = 0;
+  std::int64_t repeated_ticks = 0;      ///< ticks sent again because there was no answer
+  std::int64_t messages_resent = 0;     ///< messages sent again to the client because it had not received them
+  std::int64_t messages_requested = 0;  ///< messages requested from the client because they had not arrived
+  std::int64_t messages_repeated = 0;   ///< dropped messages that were equal to an earlier one of the client
+  std::int64_t timeouts = 0;
+  std::int64_t contradictions = 0;  ///< answers that differ from its first answer to the same tick
+  std::string ended;                ///< reason why it left; empty: in the lockstep until the end
+  double ended_s = 0;               ///< simulated time of that
+};
 
 /// Error when a lockstep client did not answer in time, which ends the run.
 class LockstepTimeout : public std::runtime_error {

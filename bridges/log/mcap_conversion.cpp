@@ -10,7 +10,6 @@
 #include <map>
 
 #include "bridges/log/event_log.hpp"
-#include "bridges/log/time_order.hpp"
 #include "bridges/mcap/mcap_record.hpp"
 
 namespace bridges {

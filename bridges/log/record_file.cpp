@@ -12,7 +12,7 @@
 #include <string>
 #include <utility>
 
-#include "bridges/base/file_lock.hpp"
+#include "bridges/base/file_descriptor.hpp"
 #include "bridges/log/event_log.hpp"
 #include "bridges/mcap/mcap_record.hpp"
 

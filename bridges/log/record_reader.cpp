@@ -2,16 +2,18 @@
 #include "bridges/log/record_reader.hpp"
 
 #include <optional>
+#include <sstream>
 #include <utility>
 
 #include "bridges/log/event_log.hpp"
 #include "bridges/log/record_file.hpp"
 #include "bridges/mcap/mcap_reader.hpp"
-#include "bridges/ros2/cdr_transcoder.hpp"
+#include "bridges/ros2/cdr.hpp"
+#include "shoal/message_codec.hpp"
 #include "shoal/message_schema.hpp"
+#include "sim/config/message_text.hpp"
 
 namespace bridges {
-
 namespace {
 
 class LogReader final : public RecordReader {
@@ -80,6 +82,15 @@ class McapRecordReader final : public RecordReader {
 std::unique_ptr<RecordReader> open_record(const std::string& path) {
   if (is_mcap_name(path)) return std::make_unique<McapRecordReader>(path);
   return std::make_unique<LogReader>(path);
+}
+
+shoal::sim_info_t read_run_info(std::span<const std::byte> payload) {
+  auto info = shoal::decode<shoal::sim_info_t>(payload, shoal::Finite::any);
+  info.world = sim::printable(info.world);
+  std::istringstream lines(info.versions);
+  info.versions.clear();
+  for (std::string line; std::getline(lines, line);) info.versions += sim::printable(line) + '\n';
+  return info;
 }
 
 }  // namespace bridges

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bridges/base/bus_error.hpp"
+#include "shoal/sim_info_t.hpp"
 
 namespace bridges {
 
@@ -34,5 +35,9 @@ class RecordReader {
 /// not those that repeat them in standard types.  Throws BusError when the file cannot be opened, is not a regular file
 /// or not of its format; an empty file is a log.
 std::unique_ptr<RecordReader> open_record(const std::string& path);
+
+/// Decodes the sim.info of a record.  Its world and versions, which are printed, have no control characters: the record
+/// may be a stranger's.  Throws shoal::MessageError.
+shoal::sim_info_t read_run_info(std::span<const std::byte> payload);
 
 }  // namespace bridges

@@ -14,7 +14,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "bridges/ros2/cdr_writer.hpp"
+#include "bridges/ros2/cdr.hpp"
 #include "bridges/ros2/ros2_names.hpp"
 #include "shoal/message_codec.hpp"
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "shoal/message_schema.hpp"
 
@@ -15,5 +16,9 @@ inline constexpr const char* only_member = "structure_needs_at_least_one_member"
 /// Schema of an LCM type as `ros2msg` text: its definition, then those of all types that it uses, in the order of their
 /// first use.  Arrays with several dimensions become one, row by row; of fixed size if all dimensions are.
 std::string schema_text(const shoal::MessageSchema& schema);
+
+/// Schema of a standard type of ROS 2, such as `sensor_msgs/msg/Imu`, as `ros2msg` text with the types that it uses.
+/// Throws std::out_of_range for a type that is not in the table.
+std::string standard_schema_text(std::string_view type);
 
 }  // namespace bridges::ros2

@@ -3,10 +3,9 @@
 
 #include <utility>
 
-#include "bridges/ros2/cdr_transcoder.hpp"
+#include "bridges/ros2/cdr.hpp"
 #include "bridges/ros2/ros2_names.hpp"
 #include "bridges/ros2/ros2_schema.hpp"
-#include "bridges/ros2/standard_types.hpp"
 
 namespace bridges::ros2 {
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "bridges/base/json_text.hpp"
 #include "bridges/web/client_json.hpp"
 #include "bridges/web/web_error.hpp"
 
@@ -61,18 +62,17 @@ ClientMessage parse_client_message(std::string_view text) {
 }
 
 std::string error_message(std::string_view text) {
-  return Json{{"op", "error"}, {"text", text}}.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_text({{"op", "error"}, {"text", text}});
 }
 
 std::string refusal_message(const std::string& id, std::string_view text) {
-  return Json{{"op", "reply"}, {"id", Json::parse(id)}, {"ok", false}, {"text", text}}.dump(
-      -1, ' ', false, Json::error_handler_t::replace);
+  return json_text({{"op", "reply"}, {"id", Json::parse(id)}, {"ok", false}, {"text", text}});
 }
 
 std::string with_control(const std::string& json, bool control) {
   Json message = parse_client_json(json);
   message["control"] = control;
-  return message.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return json_text(message);
 }
 
 }  // namespace bridges

@@ -45,6 +45,17 @@ std::shared_ptr<const std::string> in_place_of(const std::shared_ptr<const std::
   return shared(std::move(marked));
 }
 
+/// Puts an element in the place of the one of its `op`, or to the end.
+template <class Element>
+void put_in_place(std::vector<Element>& elements, Element element) {
+  const auto same =
+      std::find_if(elements.begin(), elements.end(), [&](const Element& other) { return other.op == element.op; });
+  if (same != elements.end())
+    *same = std::move(element);
+  else
+    elements.push_back(std::move(element));
+}
+
 /// Requests that change what others see, or the run.
 bool needs_control(const std::string& op) {
   return op == "control" || op == "play" || op == "seek" || op == "drive";
@@ -54,44 +65,43 @@ bool needs_control(const std::string& op) {
 
 // --- Functions for all threads
 
+bool ViewProtocol::Box::admit(const Text& text) {
+  // The thread of the server empties the box at once unless the machine is overloaded; a page that does not read must
+  // not fill the memory of the run.
+  const bool fits = bytes + text->size() <= max_queued_bytes;
+  if (fits)
+    bytes += text->size();
+  else
+    ++dropped;
+  return fits;
+}
+
 void ViewProtocol::send_state(std::span<const std::byte> state) {
   if (clients() == 0) return;
   auto text = shared(std::string(reinterpret_cast<const char*>(state.data()), state.size()));
-  {
-    const std::lock_guard lock(box_mutex_);
-    text = in_place_of(box_.state, std::move(text));
-    box_.state.swap(text);
-  }
-  wake();
+  exchange_.put([&](Box& box) {
+    text = in_place_of(box.state, std::move(text));
+    box.state.swap(text);
+  });
 }
 
 void ViewProtocol::send_state_to(int client, std::span<const std::byte> state) {
   if (clients() == 0) return;
   auto text = shared(std::string(reinterpret_cast<const char*>(state.data()), state.size()));
-  {
-    const std::lock_guard lock(box_mutex_);
-    if (box_.bytes + text->size() > max_queued_bytes && !box_.own_states.empty()) return;  // the page asks again
-    box_.bytes += text->size();
-    box_.own_states.emplace_back(client, std::move(text));
-  }
-  wake();
+  exchange_.put([&](Box& box) {
+    if (box.bytes + text->size() > max_queued_bytes && !box.own_states.empty()) return false;  // the page asks again
+    box.bytes += text->size();
+    box.own_states.emplace_back(client, std::move(text));
+    return true;
+  });
 }
 
 void ViewProtocol::send_text(std::string json) {
   if (clients() == 0) return;
-  const std::size_t bytes = json.size();
   auto text = shared(std::move(json));
-  {
-    const std::lock_guard lock(box_mutex_);
-    // The thread of the server empties the box at once unless the machine is overloaded.
-    if (box_.bytes + bytes > max_queued_bytes) {
-      ++box_.dropped;
-    } else {
-      box_.bytes += bytes;
-      box_.texts.push_back(std::move(text));
-    }
-  }
-  wake();
+  exchange_.put([&](Box& box) {
+    if (box.admit(text)) box.texts.push_back(std::move(text));
+  });
 }
 
 void ViewProtocol::retain(std::string_view op, std::string json) {
@@ -102,89 +112,49 @@ void ViewProtocol::retain(std::string_view op, std::string json) {
   } else {
     retained.text = shared(std::move(json));
   }
-  {
-    const std::lock_guard lock(box_mutex_);
-    const auto same =
-        std::find_if(box_.retained.begin(), box_.retained.end(), [&](const Retained& other) { return other.op == op; });
-    if (same != box_.retained.end())
-      *same = std::move(retained);
-    else
-      box_.retained.push_back(std::move(retained));
-  }
-  // A page that says hello after this check finds the text in the box.
-  if (clients() > 0) wake();
+  exchange_.put([&](Box& box) {
+    put_in_place(box.retained, std::move(retained));
+    // A page that says hello after this check finds the text in the box.
+    return clients() > 0;
+  });
 }
 
 void ViewProtocol::reply(int client, std::string json) {
   if (clients() == 0) return;
   auto text = shared(std::move(json));
-  {
-    const std::lock_guard lock(box_mutex_);
-    // A page that does not read must not fill the memory of the run.
-    if (box_.bytes + text->size() > max_queued_bytes) {
-      ++box_.dropped;
-    } else {
-      box_.bytes += text->size();
-      box_.replies.emplace_back(client, std::move(text));
-    }
-  }
-  wake();
+  exchange_.put([&](Box& box) {
+    if (box.admit(text)) box.replies.emplace_back(client, std::move(text));
+  });
 }
 
 void ViewProtocol::send_message(int client, std::string_view channel, Text bytes) {
   if (clients() == 0) return;
-  {
-    const std::lock_guard lock(box_mutex_);
+  exchange_.put([&](Box& box) {
     // Only the newest message of a channel waits: a slow page gets fewer, never old ones.
-    Text& place = box_.messages[{client, std::string(channel)}];
+    Text& place = box.messages[{client, std::string(channel)}];
     const std::size_t present = place ? place->size() : 0;
-    if (box_.bytes - present + bytes->size() > max_queued_bytes) {
-      if (!place) box_.messages.erase({client, std::string(channel)});
-      return;
+    if (box.bytes - present + bytes->size() > max_queued_bytes) {
+      if (!place) box.messages.erase({client, std::string(channel)});
+      return false;
     }
-    box_.bytes += bytes->size() - present;
+    box.bytes += bytes->size() - present;
     place = std::move(bytes);
-  }
-  wake();
-}
-
-std::optional<ViewRequest> ViewProtocol::take_request() {
-  if (!has_requests_.load()) return std::nullopt;
-  const std::lock_guard lock(request_mutex_);
-  if (requests_.empty()) return std::nullopt;
-  ViewRequest request = std::move(requests_.front());
-  requests_.pop_front();
-  has_requests_ = !requests_.empty();
-  const auto waiting = waiting_requests_.find(request.client);
-  if (waiting != waiting_requests_.end() && --waiting->second == 0) waiting_requests_.erase(waiting);
-  return request;
-}
-
-void ViewProtocol::wake() {
-  if (!awake_.exchange(true)) post_([this] { deliver(); });
+    return true;
+  });
 }
 
 // --- Functions of the thread of the server
 
 std::unique_ptr<WebSession> ViewProtocol::open(WebLink& link) {
   auto session = std::make_unique<ViewSession>(*this, link);
-  sessions_.push_back(session.get());
+  exchange_.add(*session);
   return session;
 }
 
-void ViewProtocol::deliver() {
-  // Take what the other threads have sent
-  awake_ = false;
-  Box box;
-  {
-    const std::lock_guard lock(box_mutex_);
-    std::swap(box, box_);
-  }
-  for (Retained& retained : box.retained) keep(std::move(retained));
+void ViewProtocol::deliver(const Box& box) {
+  for (const Retained& retained : box.retained) keep(retained);
   if (box.state) last_state_ = box.state;
-
-  // Pass it on
-  for (ViewSession* session : sessions_) {
+  for (ViewSession* session : exchange_.sessions()) {
     if (!session->greeted_) continue;
     session->dropped_ += box.dropped;
     for (const Text& text : box.texts) session->push(text);
@@ -201,34 +171,19 @@ void ViewProtocol::deliver() {
 
 void ViewProtocol::keep(Retained retained) {
   retained.revision = ++revision_;
-  const auto same =
-      std::find_if(retained_.begin(), retained_.end(), [&](const Retained& other) { return other.op == retained.op; });
-  if (same != retained_.end())
-    *same = std::move(retained);
-  else
-    retained_.push_back(std::move(retained));
+  put_in_place(retained_, std::move(retained));
 }
 
 void ViewProtocol::greeted() {
-  ++clients_;
-  deliver();  // texts and states of before are not for the new page
+  exchange_.count_client(1);
+  exchange_.deliver();  // texts and states of before are not for the new page
 }
 
 void ViewProtocol::left(const ViewSession& session, bool was_greeted) {
-  sessions_.erase(std::find(sessions_.begin(), sessions_.end(), &session));
+  exchange_.remove(session);
   if (!was_greeted) return;
-  add_request({session.link_.number(), session.may_control_, "left", ""});
-  if (--clients_ == 0) last_state_.reset();
-}
-
-bool ViewProtocol::add_request(ViewRequest request) {
-  const std::lock_guard lock(request_mutex_);
-  std::size_t& waiting = waiting_requests_[request.client];
-  if (waiting >= max_waiting_requests && request.op != "left") return false;
-  ++waiting;
-  requests_.push_back(std::move(request));
-  has_requests_ = true;
-  return true;
+  exchange_.add_request({session.link_.number(), session.may_control_, "left", ""}, true);
+  if (exchange_.count_client(-1) == 0) last_state_.reset();
 }
 
 // --- One page
@@ -277,7 +232,7 @@ void ViewSession::acknowledge(std::uint32_t sequence) {
 
 void ViewSession::request(ViewRequest request, const std::string& id) {
   if (needs_control(request.op) && !may_control_) return push(shared(refusal_message(id, no_token)));
-  if (!protocol_.add_request(std::move(request)))
+  if (!protocol_.exchange_.add_request(std::move(request)))
     push(shared(refusal_message(
         id, "too many requests: " + std::to_string(ViewProtocol::max_waiting_requests) + " of this page are waiting")));
 }
@@ -288,15 +243,14 @@ void ViewSession::push(Text text) {
     ++dropped_;
     return;
   }
-  queued_bytes_ += text->size();
-  texts_.push_back(std::move(text));
+  const std::size_t bytes = text->size();
+  texts_.push(std::move(text), bytes);
 }
 
 void ViewSession::drop_oldest(std::size_t room_for) {
   drop_messages(room_for);  // the next one on the channel replaces it
-  while (!texts_.empty() && queued_bytes_ + room_for > ViewProtocol::max_queued_bytes) {
-    queued_bytes_ -= texts_.front()->size();
-    texts_.pop_front();
+  while (!texts_.empty() && queued_bytes() + room_for > ViewProtocol::max_queued_bytes) {
+    texts_.pop();
     ++dropped_;
   }
 }
@@ -340,11 +294,7 @@ ViewSession::Text ViewSession::next_retained() {
 
 ViewSession::Text ViewSession::next_text() {
   if (dropped_ > 0) return shared("{\"op\":\"dropped\",\"count\":" + std::to_string(std::exchange(dropped_, 0)) + "}");
-  if (texts_.empty()) return nullptr;
-  Text text = std::move(texts_.front());
-  texts_.pop_front();
-  queued_bytes_ -= text->size();
-  return text;
+  return texts_.empty() ? nullptr : texts_.pop();
 }
 
 ViewSession::Text ViewSession::next_state() {
@@ -356,14 +306,14 @@ ViewSession::Text ViewSession::next_state() {
 void ViewSession::set_message(const std::string& channel, const Text& bytes) {
   const auto before = messages_.find(channel);
   const std::size_t present = before == messages_.end() ? 0 : before->second->size();
-  if (queued_bytes_ - present + bytes->size() > ViewProtocol::max_queued_bytes) return;
-  queued_bytes_ += bytes->size() - present;
+  if (queued_bytes() - present + bytes->size() > ViewProtocol::max_queued_bytes) return;
+  message_bytes_ += bytes->size() - present;
   messages_[channel] = bytes;
 }
 
 void ViewSession::drop_messages(std::size_t room_for) {
-  while (!messages_.empty() && queued_bytes_ + room_for > ViewProtocol::max_queued_bytes) {
-    queued_bytes_ -= messages_.begin()->second->size();
+  while (!messages_.empty() && queued_bytes() + room_for > ViewProtocol::max_queued_bytes) {
+    message_bytes_ -= messages_.begin()->second->size();
     messages_.erase(messages_.begin());
   }
 }
@@ -376,7 +326,7 @@ ViewSession::Text ViewSession::next_message() {
   last_channel_ = next->first;
   Text bytes = std::move(next->second);
   messages_.erase(next);
-  queued_bytes_ -= bytes->size();
+  message_bytes_ -= bytes->size();
   return bytes;
 }
 

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -18,6 +15,7 @@
 
 #include "bridges/web/access_token.hpp"
 #include "bridges/web/view_request.hpp"
+#include "bridges/web/web_exchange.hpp"
 #include "bridges/web/web_protocol.hpp"
 
 namespace bridges {
@@ -25,8 +23,8 @@ namespace bridges {
 class ViewSession;
 
 /// Subprotocol of the live page (docs/develop/view_protocol.md), without the network: what each page gets, and when.
-/// Its functions for the simulation only put a message into a box under a lock and wake the thread of the server; in
-/// this thread deliver() passes the messages on to the sessions.
+/// Its functions for the simulation only put a message into the box of a WebExchange; in the thread of the server
+/// deliver() passes the messages on to the sessions.
 class ViewProtocol final : public WebProtocol {
  public:
   static constexpr std::size_t max_queued_bytes = std::size_t{8} << 20;  ///< texts and messages that wait for one page
@@ -34,25 +32,22 @@ class ViewProtocol final : public WebProtocol {
   static constexpr std::size_t max_waiting_requests = 32;                ///< of one page
   static constexpr std::size_t max_own_states = 4;                       ///< that wait for the page that asked for them
 
-  /// Function that runs work in the thread of the server.
-  using Post = std::function<void(std::function<void()>)>;
-
   /// `token_to_read`: pages without the token are closed.  `post`: may be set later, before the first client.
   ViewProtocol(const AccessToken& token, bool token_to_read) : token_(token), token_to_read_(token_to_read) {}
   /// Sets how to reach the thread of the server.
-  void set_post(Post post) { post_ = std::move(post); }
+  void set_post(WebPost post) { exchange_.set_post(std::move(post)); }
 
   std::unique_ptr<WebSession> open(WebLink& link) override;
 
   /// See WebServer.
-  int clients() const { return clients_.load(); }
+  int clients() const { return exchange_.clients(); }
   void send_state(std::span<const std::byte> state);
   void send_text(std::string json);
   void retain(std::string_view op, std::string json);
   void reply(int client, std::string json);
   void send_message(int client, std::string_view channel, std::shared_ptr<const std::string> bytes);
   void send_state_to(int client, std::span<const std::byte> state);
-  std::optional<ViewRequest> take_request();
+  std::optional<ViewRequest> take_request() { return exchange_.take_request(); }
 
  private:
   friend class ViewSession;
@@ -67,41 +62,31 @@ class ViewProtocol final : public WebProtocol {
     std::uint64_t revision = 0;
   };
   /// Input of other threads since deliver().
-  struct Box {
+  struct Box : WebBox {
     Text state;
     std::vector<Text> texts;
-    std::size_t bytes = 0;
-    std::uint64_t dropped = 0;
     std::vector<Retained> retained;
     std::vector<std::pair<int, Text>> replies;
     std::map<Place, Text> messages;  // newest
     std::vector<std::pair<int, Text>> own_states;
+
+    /// Counts the bytes of a text that is put into the box, or a text for which there is no room.
+    bool admit(const Text& text);
   };
 
-  void wake();
-  void deliver();
+  void deliver(const Box& box);
   void keep(Retained retained);
-  bool add_request(ViewRequest request);
   void greeted();
   void left(const ViewSession& session, bool was_greeted);
 
   const AccessToken& token_;
   const bool token_to_read_;
-  Post post_;
-  std::atomic<int> clients_ = 0;
-  std::atomic<bool> awake_ = false;
-  std::mutex box_mutex_;
-  Box box_;
-  std::mutex request_mutex_;
-  std::deque<ViewRequest> requests_;
-  std::map<int, std::size_t> waiting_requests_;  // by client
-  std::atomic<bool> has_requests_ = false;
+  WebExchange<Box, ViewRequest, ViewSession> exchange_{[this](const Box& box) { deliver(box); }, max_waiting_requests};
 
   // Members of the server thread:
   std::vector<Retained> retained_;
   std::uint64_t revision_ = 0;
   Text last_state_;
-  std::vector<ViewSession*> sessions_;
 };
 
 /// One page.
@@ -133,6 +118,7 @@ class ViewSession final : public WebSession {
   void drop_messages(std::size_t room_for);
   Text next_message();
   Text next_own_state();
+  std::size_t queued_bytes() const { return texts_.bytes() + message_bytes_; }
 
   ViewProtocol& protocol_;
   WebLink& link_;
@@ -141,15 +127,15 @@ class ViewSession final : public WebSession {
   std::vector<std::uint64_t> revisions_sent_;  // of the retained texts, in their order
   std::uint64_t revision_seen_ = 0;
   bool complete_ = false;  // every retained text has been sent once
-  std::deque<Text> texts_;
-  std::size_t queued_bytes_ = 0;
+  WebQueue<Text> texts_;
   std::uint64_t dropped_ = 0;
   std::size_t bytes_since_state_ = 0;
   Text state_;
   std::deque<Text> own_states_;
   std::deque<std::uint32_t> unacknowledged_;
   std::map<std::string, Text> messages_;  // newest that was not sent, by channel
-  std::string last_channel_;              // of the message that was sent last
+  std::size_t message_bytes_ = 0;
+  std::string last_channel_;  // of the message that was sent last
 };
 
 }  // namespace bridges

@@ -7,7 +7,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "devices/autopilot/level_check.hpp"
+#include "devices/autopilot/autopilot_control.hpp"
 #include "devices/joint/joint_of_device.hpp"
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/autopilot_command_t.hpp"
@@ -18,8 +18,8 @@
 #include "shoal/waypoints_command_t.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/vehicle/mounted_device.hpp"
-#include "sim/world/plan_check.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world/world_checks.hpp"
 
 namespace devices {
 

@@ -10,7 +10,7 @@
 #include "devices/marine/fin.hpp"
 #include "shoal/actuator_command_t.hpp"
 #include "shoal/message_codec.hpp"
-#include "sim/base/linear_algebra.hpp"
+#include "sim/base/math.hpp"
 #include "sim/vehicle/mounted_device.hpp"
 #include "sim/world/world.hpp"
 

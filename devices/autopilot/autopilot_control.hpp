@@ -6,7 +6,13 @@
 #include "sim/config/param_reader.hpp"
 #include "sim/state/state_archive.hpp"
 
+namespace sim {
+struct DeviceContext;
+}
+
 namespace devices {
+
+class AutopilotActuators;
 
 /// Lower limit of the speed in the control laws of fins, whose effect vanishes with the speed.
 inline constexpr double slowest_mps = 0.5;
@@ -80,5 +86,10 @@ class RateHold {
   double bandwidth_radps_;
   Disturbance disturbance_;
 };
+
+/// Compares the gains that hold roll and pitch with the Munk moment of the craft: warns where they are too weak for the
+/// speed that its thrusters reach, and notes the speed up to which they hold it level.  A craft with fins or a
+/// waterline is not checked: these right it.
+void check_level(AutopilotActuators& actuators, const HoldGains& attitude, const sim::DeviceContext& context);
 
 }  // namespace devices

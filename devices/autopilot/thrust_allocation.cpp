@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "sim/base/linear_algebra.hpp"
+#include "sim/base/math.hpp"
 
 namespace devices {
 

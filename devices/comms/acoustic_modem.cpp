@@ -5,8 +5,8 @@
 #include <charconv>
 #include <stdexcept>
 
-#include "devices/common/own_clock.hpp"
 #include "devices/comms/micromodem_rates.hpp"
+#include "devices/comms/modem.hpp"
 #include "shoal/acoustic_received_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/modem_send_t.hpp"

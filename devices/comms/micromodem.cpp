@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "devices/common/named_vehicle.hpp"
-#include "devices/common/own_clock.hpp"
+#include "devices/comms/modem.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/nmea_sentence_t.hpp"
 #include "sim/base/log.hpp"

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "devices/drive/drive_commands.hpp"
-#include "devices/drive/weight_on_wheels.hpp"
 #include "devices/drive/wheel_geometry.hpp"
 #include "devices/drive/wheel_sides.hpp"
 #include "devices/joint/joint_of_device.hpp"

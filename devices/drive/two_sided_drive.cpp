@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "devices/drive/weight_on_wheels.hpp"
 #include "devices/drive/wheel_geometry.hpp"
 #include "devices/drive/wheel_sides.hpp"
 #include "devices/joint/joint_of_device.hpp"

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "devices/joint/bumper.hpp"
-#include "sim/device/unhashed_until_used.hpp"
+#include "sim/device/device.hpp"
 
 namespace devices {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "devices/marine/water_mount.hpp"
 
-#include "sim/base/linear_algebra.hpp"
+#include "sim/base/math.hpp"
 
 namespace devices {
 

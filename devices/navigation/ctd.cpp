@@ -5,7 +5,7 @@
 
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/ctd_t.hpp"
-#include "sim/medium/practical_salinity.hpp"
+#include "sim/medium/sea_water.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "devices/navigation/depth_formula.hpp"
+#include "devices/navigation/pressure.hpp"
 #include "sim/random/noise.hpp"
 #include "sim/vehicle/device_context.hpp"
 

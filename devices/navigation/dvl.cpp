@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "devices/ranging/ray_filter.hpp"
+#include "devices/ranging/ray_casting.hpp"
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/dvl_t.hpp"
 #include "sim/config/presets.hpp"

@@ -8,8 +8,7 @@
 #include <limits>
 #include <map>
 
-#include "devices/common/param_checks.hpp"
-#include "devices/ranging/ray_filter.hpp"
+#include "devices/ranging/ray_casting.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world/world.hpp"

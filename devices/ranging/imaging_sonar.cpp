@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "devices/common/param_checks.hpp"
+#include "devices/ranging/ray_casting.hpp"
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/sonar_image_t.hpp"
 #include "sim/world/world.hpp"

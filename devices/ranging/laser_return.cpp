@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "devices/ranging/beam_pattern.hpp"
-#include "devices/ranging/ray_filter.hpp"
+#include "devices/ranging/ray_casting.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {

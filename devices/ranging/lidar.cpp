@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "devices/common/param_checks.hpp"
+#include "devices/ranging/ray_casting.hpp"
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/planar_lidar_t.hpp"
 #include "sim/config/presets.hpp"

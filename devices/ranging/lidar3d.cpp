@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "devices/common/param_checks.hpp"
+#include "devices/ranging/ray_casting.hpp"
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/point_cloud_t.hpp"
 #include "sim/config/presets.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "devices/ranging/beam_pattern.hpp"
+#include "devices/ranging/ray_casting.hpp"
 #include "messages/reporter/message_reporter.hpp"
 #include "shoal/sonar_range_t.hpp"
 #include "sim/world/world.hpp"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "devices/ranging/ray_filter.hpp"
-#include "sim/medium/absorption.hpp"
+#include "devices/ranging/ray_casting.hpp"
+#include "sim/medium/sea_water.hpp"
 #include "sim/world/world.hpp"
 
 namespace devices {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/device/unhashed_until_used.hpp"
-#include "sim/scene/color.hpp"
+#include "sim/device/device.hpp"
+#include "sim/scene/light.hpp"
 #include "sim/vehicle/device_context.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 

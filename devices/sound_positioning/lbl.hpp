@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "devices/sound_positioning/assumed_water.hpp"
+#include "devices/sound_positioning/acoustic_positioning.hpp"
 #include "devices/sound_positioning/interrogator.hpp"
 #include "sim/random/noise.hpp"
 

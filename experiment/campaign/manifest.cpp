@@ -11,6 +11,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "bridges/base/json_text.hpp"
 #include "experiment/files/file_replacement.hpp"
 #include "experiment/files/json_reader.hpp"
 #include "experiment/files/no_links.hpp"
@@ -161,7 +162,7 @@ std::string manifest_text(const LoadedStudy& study, const std::vector<StudyRun>&
     }
     line["set"] = sets_of(study, run);
     line["inputs"] = inputs_of(study, run);
-    text += line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    text += bridges::json_text(line) + "\n";
   }
   return text;
 }

@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiment/campaign/outside_program.hpp"
-
 #include <signal.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <sstream>
 #include <stdexcept>
 #include <thread>
 
+#include "bridges/base/child_program.hpp"
+#include "experiment/campaign/engines.hpp"
 #include "experiment/files/scratch_directory.hpp"
-#include "experiment/process/child_program.hpp"
 #include "experiment/process/signals.hpp"
 #include "experiment/results/run_record.hpp"
 
@@ -33,7 +29,8 @@ int exit_code_of(int status) {
 /// Starts a program from PATH.  Throws std::runtime_error.
 pid_t start_outside(const std::vector<std::string>& arguments, const std::string& log) {
   pid_t pid = 0;
-  if (const int error = start_child({arguments.front(), arguments, own_environment(), log}, pid); error != 0)
+  if (const int error = bridges::start_child({arguments.front(), arguments, bridges::own_environment(), log}, pid);
+      error != 0)
     throw std::runtime_error("cannot start '" + arguments.front() + "': " + std::strerror(error));
   return pid;
 }
@@ -41,10 +38,7 @@ pid_t start_outside(const std::vector<std::string>& arguments, const std::string
 }  // namespace
 
 void require_program(const std::string& name, const std::string& package) {
-  const char* const path = std::getenv("PATH");
-  std::istringstream folders(path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin");
-  for (std::string folder; std::getline(folders, folder, ':');)
-    if (access((folder.empty() ? name : folder + "/" + name).c_str(), X_OK) == 0) return;
+  if (bridges::is_program(name)) return;
   throw std::runtime_error("there is no program '" + name + "' in PATH; Debian has it in the package " + package);
 }
 

@@ -6,12 +6,11 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "bridges/base/child_program.hpp"
 #include "experiment/campaign/engines.hpp"
 #include "experiment/campaign/manifest.hpp"
-#include "experiment/campaign/outside_program.hpp"
 #include "experiment/files/file_replacement.hpp"
 #include "experiment/files/no_links.hpp"
-#include "experiment/process/shell_word.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace experiment {
@@ -94,7 +93,7 @@ void run_by_parallel(const LoadedStudy& study, const EngineOptions& options, std
     if (word.find('{') != std::string::npos)
       throw std::runtime_error("the name '" + sim::shortened(sim::printable(word)) +
                                "' must not have a '{' with the engine parallel, which GNU parallel would replace");
-    command += shell_word(word) + " ";
+    command += bridges::shell_word(word) + " ";
   }
   // The load of another machine is unknown.
   const int threads = options.ssh_login_file.empty() ? options.study.threads : 1;

@@ -8,7 +8,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "experiment/campaign/outside_program.hpp"
+#include "experiment/campaign/engines.hpp"
 #include "experiment/files/no_links.hpp"
 #include "experiment/process/signals.hpp"
 #include "experiment/study/study_results.hpp"

@@ -10,12 +10,11 @@
 #include <stdexcept>
 #include <thread>
 
+#include "bridges/base/child_program.hpp"
 #include "experiment/campaign/engines.hpp"
 #include "experiment/campaign/manifest.hpp"
-#include "experiment/campaign/outside_program.hpp"
 #include "experiment/files/file_replacement.hpp"
 #include "experiment/files/no_links.hpp"
-#include "experiment/process/shell_word.hpp"
 #include "experiment/process/signals.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/random/random.hpp"
@@ -96,12 +95,12 @@ class SlurmSubmission {
     for (const auto& chunk : chunks) lines += indices_text(chunk) + "\n";
     write_whole_file(begin + ".txt", lines);
     std::string command;
-    for (const std::string& word : chunk_command(options_)) command += shell_word(word) + " ";
+    for (const std::string& word : chunk_command(options_)) command += bridges::shell_word(word) + " ";
     write_whole_file(
         begin + ".sh",
         "#!/bin/sh\n# A task of `shoal study run --engine slurm`: the runs in one line of the list.\nexec " + command +
             fmt::format("--jobs {} --threads 1 --index \"$(sed -n \"${{SLURM_ARRAY_TASK_ID}}p\" {})\"\n",
-                        options_.study.jobs, shell_word(begin + ".txt")));
+                        options_.study.jobs, bridges::shell_word(begin + ".txt")));
     // A task that lost its node starts again (--requeue) and continues its log; runs that have a result are skipped.
     std::vector<std::string> arguments{"sbatch",
                                        "--parsable",

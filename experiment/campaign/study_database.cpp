@@ -3,16 +3,14 @@
 
 #include <spdlog/fmt/fmt.h>
 #include <sqlite3.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 
-#include "experiment/files/no_links.hpp"
+#include "experiment/files/part_file.hpp"
 #include "experiment/run/version.hpp"
 #include "experiment/study/study_rules.hpp"
 #include "experiment/study/study_tables.hpp"
@@ -44,31 +42,22 @@ struct FinalizeStatement {
 /// Database that appears under its name when it is complete.
 class NewDatabase {
  public:
-  explicit NewDatabase(const std::string& path) : path_(path), part_(path + ".part") {
-    make_part_file(path_, part_);
+  explicit NewDatabase(const std::string& path) : file_(path) {
     sqlite3* opened = nullptr;
-    const int code = sqlite3_open_v2(part_.c_str(), &opened, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, nullptr);
+    const int code = sqlite3_open_v2(file_.part_name().c_str(), &opened, SQLITE_OPEN_READWRITE, nullptr);
     database_.reset(opened);
     check(code);
     // A file that is not complete is never used: no journal is needed.
     execute("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF; BEGIN;");
     execute(schema);
   }
-  ~NewDatabase() {
-    database_.reset();
-    if (!part_.empty()) unlink(part_.c_str());
-  }
-  NewDatabase(const NewDatabase&) = delete;
-  NewDatabase& operator=(const NewDatabase&) = delete;
 
   void execute(const char* sql) { check(sqlite3_exec(database_.get(), sql, nullptr, nullptr, nullptr)); }
 
   void finish() {
     execute("COMMIT; PRAGMA synchronous = FULL;");
     check(sqlite3_close(database_.release()));
-    if (std::rename(part_.c_str(), path_.c_str()) != 0)
-      throw std::runtime_error(path_ + ": cannot be written: " + std::strerror(errno));
-    part_.clear();
+    file_.finish();
   }
 
   sqlite3* handle() const { return database_.get(); }
@@ -76,12 +65,12 @@ class NewDatabase {
     if (code == SQLITE_OK || code == SQLITE_DONE) return;
     const int error = database_ ? sqlite3_system_errno(database_.get()) : 0;
     throw std::runtime_error(
-        path_ + ": cannot be written: " + (database_ ? sqlite3_errmsg(database_.get()) : sqlite3_errstr(code)) +
+        file_.path() + ": cannot be written: " + (database_ ? sqlite3_errmsg(database_.get()) : sqlite3_errstr(code)) +
         (error != 0 ? std::string(": ") + std::strerror(error) : ""));
   }
 
  private:
-  std::string path_, part_;
+  PartFile<> file_;
   std::unique_ptr<sqlite3, CloseDatabase> database_;
 };
 

@@ -1,13 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "experiment/campaign/study_rows.hpp"
 #include "experiment/study/study_runs.hpp"
 
 namespace experiment {
+
+/// Row of study.csv: the result of a run, perhaps of someone else.
+struct StudyRow {
+  std::string in_case;
+  std::int64_t seed = 0;
+  std::size_t point = 0;                             ///< from 1; 0: the study has no factors
+  std::string run_hash;                              ///< empty: the run has no result
+  std::string exit_code, passed, ended, sim_time_s;  ///< as text of the table
+  std::map<std::string, std::optional<double>> figures;
+  std::string shoal, processor, c_library;
+};
+
+/// Parses the text of a study.csv, with all its columns.  `name`: of the file, for errors.  Throws std::runtime_error
+/// with line, column and rule.
+std::vector<StudyRow> parse_study_rows(const std::string& text, const std::string& name);
 
 /// Comparison of a run with a row of a study.csv.
 struct Verified {

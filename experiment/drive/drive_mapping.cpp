@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "experiment/drive/drive_error.hpp"
+#include "experiment/drive/drive_profile.hpp"
 #include "shoal/ackermann_command_t.hpp"
 #include "shoal/actuator_command_t.hpp"
 #include "shoal/helm_command_t.hpp"

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -146,5 +147,11 @@ std::string_view default_drive_profile();
 DriveProfile read_drive_profile(const std::string& file);
 /// Reads the text of a profile.  Throws sim::ConfigError.
 DriveProfile parse_drive_profile(const std::string& text, const std::string& name);
+
+/// Error of a vehicle that cannot be driven as asked, or of a gamepad.
+class DriveError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 }  // namespace experiment

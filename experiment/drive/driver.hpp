@@ -4,9 +4,11 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "experiment/drive/drive_mapping.hpp"
+#include "experiment/drive/drive_profile.hpp"
 
 namespace experiment {
 
@@ -47,6 +49,24 @@ class Driver {
   bool held_ = false;
   int safe_left_ = 0;
   Clock::time_point sign_{}, next_{};
+};
+
+/// Set positions of the axes, moved by keys.
+class DriveKeys {
+ public:
+  /// Effect of a key.
+  enum class Effect { none, sign_of_life, next_joint };
+
+  explicit DriveKeys(const DriveProfile::Keys& keys) : keys_(keys) {}
+  /// Takes a key by its name, as in KeyEvent.  Every key of the profile is a sign of life except the one that centers.
+  Effect press(const std::string& key);
+  /// Returns the set position of each axis.
+  const DriveValues& values() const { return values_; }
+  void centre() { values_.clear(); }
+
+ private:
+  DriveProfile::Keys keys_;
+  DriveValues values_;
 };
 
 }  // namespace experiment

@@ -11,7 +11,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "experiment/drive/drive_error.hpp"
+#include "experiment/drive/drive_profile.hpp"
 
 namespace experiment {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "experiment/drive/drive_error.hpp"
+#include "experiment/drive/drive_profile.hpp"
 
 namespace experiment {
 

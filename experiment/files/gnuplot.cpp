@@ -2,7 +2,6 @@
 #include "experiment/files/gnuplot.hpp"
 
 #include <signal.h>
-#include <spawn.h>
 #include <spdlog/fmt/fmt.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -12,30 +11,19 @@
 #include <limits>
 #include <thread>
 
-extern char** environ;
+#include "bridges/base/child_program.hpp"
 
 namespace experiment {
 
 namespace {
 
 /// Runs a shell in its own process group: Ctrl-C on the terminal must not reach gnuplot.
-pid_t start(std::string directory, std::string script) {
-  std::string shell = "sh";
-  std::string option = "-c";
+pid_t start(const std::string& directory, const std::string& script) {
   // A link in place of the log is removed, not followed.  -d: no init files.
-  std::string command = "cd -- \"$0\" && rm -f plot.log && exec gnuplot -d \"$1\" > plot.log 2>&1 < /dev/null";
-  char* arguments[] = {shell.data(), option.data(), command.data(), directory.data(), script.data(), nullptr};
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t usual;
-  sigemptyset(&usual);
-  sigaddset(&usual, SIGPIPE);
-  posix_spawnattr_setsigdefault(&attributes, &usual);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF);
+  const std::string command = "cd -- \"$0\" && rm -f plot.log && exec gnuplot -d \"$1\" > plot.log 2>&1 < /dev/null";
   pid_t pid = 0;
-  const int error = posix_spawnp(&pid, "sh", nullptr, &attributes, arguments, environ);
-  posix_spawnattr_destroy(&attributes);
+  const int error =
+      bridges::start_child({"sh", {"sh", "-c", command, directory, script}, bridges::own_environment(), ""}, pid);
   return error == 0 ? pid : 0;
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "bridges/base/json_text.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace experiment {
@@ -12,7 +13,7 @@ namespace experiment {
 using Json = nlohmann::ordered_json;
 
 std::string shown_json(const Json& value) {
-  return sim::shortened(sim::printable(value.dump(-1, ' ', false, Json::error_handler_t::replace)));
+  return sim::shortened(sim::printable(bridges::json_text(value)));
 }
 
 Json parse_json(const std::string& text, const std::string& file) {

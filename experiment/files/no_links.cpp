@@ -7,6 +7,8 @@
 #include <cassert>
 #include <cerrno>
 #include <filesystem>
+#include <stdexcept>
+#include <system_error>
 
 namespace experiment {
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <stdexcept>
 #include <string>
-#include <system_error>
 
 #include "bridges/base/file_descriptor.hpp"
 
@@ -24,16 +22,5 @@ void make_folders(const std::string& root, const std::string& folder);
 /// is not touched.  Also for files that another program or library then opens by this name.  Throws std::system_error
 /// with the reason alone.
 bridges::FileDescriptor make_new_file(const std::string& path);
-
-/// Like make_new_file(), for the `part` of a file that gets the name `path` when it is complete.  Throws an Error with
-/// this name and the reason.
-template <typename Error = std::runtime_error>
-bridges::FileDescriptor make_part_file(const std::string& path, const std::string& part) {
-  try {
-    return make_new_file(part);
-  } catch (const std::system_error& error) {
-    throw Error(path + ": cannot be written: " + error.code().message());
-  }
-}
 
 }  // namespace experiment

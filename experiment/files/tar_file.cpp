@@ -10,19 +10,15 @@
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
-#include <system_error>
 #include <vector>
-
-#include "experiment/files/no_links.hpp"
 
 namespace experiment {
 
-TarFile::TarFile(const std::string& path) : path_(path), part_(path + ".part"), archive_(archive_write_new()) {
+TarFile::TarFile(const std::string& path) : file_(path), archive_(archive_write_new()) {
   if (archive_ == nullptr) throw std::bad_alloc();
   archive_write_add_filter_gzip(archive_);
   archive_write_set_format_pax_restricted(archive_);
   try {
-    file_ = make_part_file(path_, part_);
     if (archive_write_open_fd(archive_, file_.number()) != ARCHIVE_OK) fail();
   } catch (...) {
     archive_write_free(archive_);
@@ -31,15 +27,12 @@ TarFile::TarFile(const std::string& path) : path_(path), part_(path + ".part"), 
 }
 
 TarFile::~TarFile() {
-  if (archive_ == nullptr) return;
   archive_write_free(archive_);
-  std::error_code ignored;
-  std::filesystem::remove(part_, ignored);
 }
 
 void TarFile::fail() const {
   const char* reason = archive_error_string(archive_);
-  throw std::runtime_error(path_ + ": cannot be written: " + (reason != nullptr ? reason : "unknown error"));
+  throw std::runtime_error(file_.path() + ": cannot be written: " + (reason != nullptr ? reason : "unknown error"));
 }
 
 void TarFile::start_entry(const std::string& name, std::uint64_t size) {
@@ -88,9 +81,7 @@ void TarFile::finish() {
   if (archive_write_close(archive_) != ARCHIVE_OK) fail();
   archive_write_free(archive_);
   archive_ = nullptr;
-  std::error_code error;
-  std::filesystem::rename(part_, path_, error);
-  if (error) throw std::runtime_error(path_ + ": cannot be written: " + error.message());
+  file_.finish();
 }
 
 }  // namespace experiment

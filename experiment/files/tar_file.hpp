@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "bridges/base/file_descriptor.hpp"
+#include "experiment/files/part_file.hpp"
 
 struct archive;
 
@@ -31,8 +31,7 @@ class TarFile {
   void write(const char* bytes, std::size_t size);
   [[noreturn]] void fail() const;
 
-  std::string path_, part_;
-  bridges::FileDescriptor file_;
+  PartFile<> file_;
   archive* archive_;
 };
 

@@ -12,15 +12,14 @@
 #include <set>
 #include <stdexcept>
 
+#include "bridges/base/json_text.hpp"
 #include "experiment/replay/replayed_world.hpp"
 #include "experiment/results/run_record.hpp"
-#include "experiment/results/verdict_json.hpp"
+#include "experiment/results/summary_file.hpp"
 #include "experiment/run/runner.hpp"
-#include "experiment/score/saved_scores.hpp"
 #include "experiment/score/scoring.hpp"
 #include "experiment/score/trajectory/estimate_file.hpp"
 #include "experiment/score/trajectory/mrclam_files.hpp"
-#include "experiment/score/trajectory/tum_file.hpp"
 #include "experiment/terminal/progress.hpp"
 #include "shoal/estimate_t.hpp"
 #include "shoal/message_codec.hpp"
@@ -317,7 +316,7 @@ std::string LogScore::to_json() const {
   json["rules"] = nlohmann::ordered_json::array();
   for (const RuleVerdict& verdict : verdicts) json["rules"].push_back(json_of(verdict));
   json["notes"] = notes;
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return bridges::json_text(json, 2) + "\n";
 }
 
 }  // namespace experiment

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -22,9 +25,17 @@ class Optimizer {
 };
 
 /// Returns a coordinate reflected at 0 and 1, as often as needed.
-double reflected(double x);
+inline double reflected(double x) {
+  const double in_period = x - 2 * std::floor(x / 2);  // 0 to 2
+  return in_period <= 1 ? in_period : 2 - in_period;
+}
 
 /// Returns the numbers of the values in descending order; of equal values the first one comes first.
-std::vector<std::size_t> by_rank(std::span<const double> values);
+inline std::vector<std::size_t> by_rank(std::span<const double> values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] > values[b]; });
+  return order;
+}
 
 }  // namespace experiment

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiment/process/browser.hpp"
 
-#include <fcntl.h>
-#include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -14,41 +11,14 @@
 #include <cstring>
 #include <mutex>
 
+#include "bridges/base/child_program.hpp"
 #include "sim/base/log.hpp"
-
-extern char** environ;
 
 namespace experiment {
 
 namespace {
 
 constexpr std::string_view place_of_url = "%s";
-
-/// Starts a program in its own session, without our files, signals and terminal.  Returns 0, or the error as in errno.
-int start(std::vector<std::string> command, pid_t& pid) {
-  std::vector<char*> arguments;
-  for (std::string& word : command) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  // The browser's output is discarded: ours may be data, and browsers write a lot for as long as they run.
-  posix_spawn_file_actions_t files;
-  posix_spawn_file_actions_init(&files);
-  posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&files, 1, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&files, 2, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addclosefrom_np(&files, 3);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t all, none;
-  sigfillset(&all);
-  sigemptyset(&none);
-  posix_spawnattr_setsigdefault(&attributes, &all);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
-  const int error = posix_spawnp(&pid, arguments[0], &files, &attributes, arguments.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  posix_spawn_file_actions_destroy(&files);
-  return error;
-}
 
 /// Waits for the end of a program, and warns if it has failed.
 void watch(const std::stop_token& stop, pid_t pid, const std::string& program) {
@@ -95,8 +65,11 @@ std::vector<std::string> browser_command(std::string_view browser, const std::st
 void Browser::open(const std::string& url) {
   const char* browser = std::getenv("BROWSER");
   const std::vector<std::string> command = browser_command(browser == nullptr ? "" : browser, url);
+  // The browser's output is discarded: ours may be data, and browsers write a lot for as long as they run.
+  bridges::ChildProgram program{command[0], command, bridges::own_environment(), "/dev/null"};
+  program.stays = true;
   pid_t pid = 0;
-  if (const int error = start(command, pid); error != 0)
+  if (const int error = bridges::start_child(program, pid); error != 0)
     sim::log_warn("--open: cannot start '{}': {}; open the address by hand", command[0], std::strerror(error));
   else
     watch_ = std::jthread([pid, program = command[0]](const std::stop_token& stop) { watch(stop, pid, program); });

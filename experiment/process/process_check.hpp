@@ -4,7 +4,9 @@
 #include <set>
 #include <string>
 
+#include "bridges/lockstep/channel_use.hpp"
 #include "sim/config/warnings.hpp"
+#include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
 
 namespace experiment {
@@ -22,5 +24,12 @@ void warn_of_missing_programs(const sim::LoadedWorld& loaded, sim::Warnings& war
 
 /// Warns of a `command:` whose program has a declaration, by which `args:` could be checked.
 void warn_of_unchecked_arguments(const sim::LoadedWorld& loaded, sim::Warnings& warnings);
+
+/// Warns, at the end of a run, of what lockstep clients published where a device reports or nothing reads, and of
+/// subscriptions to channels on which nothing was published.  Channels that the programs of the world declare are not
+/// warned of, nor, in a run with a record (`is_recorded`), those that only the record reads, unless their name
+/// resembles that of a channel that something reads.
+void warn_of_channels(const sim::LoadedWorld& loaded, const sim::World& world, const bridges::ChannelUse& use,
+                      bool is_recorded, sim::Warnings& warnings);
 
 }  // namespace experiment

@@ -8,16 +8,14 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <sstream>
 #include <stdexcept>
 #include <thread>
 
+#include "bridges/base/child_program.hpp"
 #include "bridges/signing/run_key.hpp"
-#include "experiment/process/child_program.hpp"
-#include "sim/config/shipped_files.hpp"
+#include "sim/config/file_access.hpp"
 
 namespace experiment {
 
@@ -38,7 +36,7 @@ std::string find_program(const std::string& name) {
 
 std::vector<std::string> environment_with(const std::string& lcm_url, const std::string& run_key) {
   const std::string key_entry = std::string(bridges::run_key_variable) + "=";
-  std::vector<std::string> environment = own_environment();
+  std::vector<std::string> environment = bridges::own_environment();
   std::erase_if(environment, [&](const std::string& entry) {
     return entry.starts_with("LCM_DEFAULT_URL=") || entry.starts_with(key_entry);
   });
@@ -56,18 +54,7 @@ std::string describe_status(int status) {
 }  // namespace
 
 bool can_be_started(const std::string& program) {
-  const auto is_program = [](const std::string& path) {
-    std::error_code error;
-    return fs::is_regular_file(path, error) && access(path.c_str(), X_OK) == 0;
-  };
-  const std::string found = find_program(program);
-  if (found.find('/') != std::string::npos) return is_program(found);
-  const char* path = std::getenv("PATH");
-  std::istringstream directories(path != nullptr ? path : "");
-  for (std::string directory; std::getline(directories, directory, ':');)
-    // An empty entry of PATH is the working folder (POSIX).
-    if (is_program((directory.empty() ? "." : directory) + "/" + found)) return true;
-  return false;
+  return bridges::is_program(find_program(program));
 }
 
 ProcessGroup::~ProcessGroup() {
@@ -85,7 +72,7 @@ void ProcessGroup::start(const sim::ProcessConfig& config, const std::string& lc
       argument.replace(at, 9, lcm_url);
   const std::string log = log_directory.empty() ? "" : log_directory + "/" + config.name + ".log";
   pid_t pid = 0;
-  const int error = start_child({arguments[0], arguments, environment_with(lcm_url, run_key_), log}, pid);
+  const int error = bridges::start_child({arguments[0], arguments, environment_with(lcm_url, run_key_), log}, pid);
   if (error != 0)
     throw std::runtime_error("process '" + config.name + "': cannot start '" + arguments[0] +
                              "': " + std::strerror(error));

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "bridges/control/time_machine.hpp"
+#include "bridges/control/sim_service.hpp"
 #include "experiment/replay/replay_log.hpp"
 #include "sim/bus/bus.hpp"
 #include "sim/run/run_control.hpp"

@@ -10,12 +10,10 @@
 #include <memory>
 #include <set>
 
-#include "experiment/replay/line_difference.hpp"
 #include "experiment/replay/replay_messages.hpp"
 #include "experiment/replay/replayed_world.hpp"
 #include "experiment/run/version.hpp"
 #include "experiment/snapshot/run_identity.hpp"
-#include "experiment/snapshot/world_difference.hpp"
 #include "experiment/terminal/progress.hpp"
 #include "messages/yaml/message_writer.hpp"
 #include "sim/config/message_text.hpp"

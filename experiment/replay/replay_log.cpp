@@ -16,10 +16,10 @@
 
 #include "bridges/control/run_audit.hpp"
 #include "bridges/log/event_log.hpp"
+#include "bridges/log/record_reader.hpp"
 #include "bridges/log/recording_bus.hpp"
-#include "bridges/log/run_info.hpp"
 #include "bridges/log/run_journal.hpp"
-#include "experiment/results/audit_text.hpp"
+#include "experiment/results/summary_file.hpp"
 #include "experiment/run/version.hpp"
 #include "experiment/snapshot/snapshot_pieces.hpp"
 #include "shoal/message_codec.hpp"

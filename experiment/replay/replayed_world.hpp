@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -107,5 +108,13 @@ class ReplayedWorld {
   bool live_ = false;
   std::vector<std::string> notes_;
 };
+
+/// Returns the lines that differ between two texts, in order: `-` before lines only in the first, `+` before lines only
+/// in the second, with the line number.  At most `max` lines, followed by the number of the remaining ones.
+std::vector<std::string> line_difference(const std::string& first, const std::string& second, std::size_t max = 40);
+
+/// Returns the entities that only the first world has, by name: `object 'box'`, `vehicle 'r1'`, `device 'r1/lidar'`,
+/// `event 'storm'`.
+std::vector<std::string> entities_only_in(const sim::WorldConfig& world, const sim::WorldConfig& other);
 
 }  // namespace experiment

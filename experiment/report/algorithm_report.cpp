@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiment/report/algorithm_report.hpp"
-
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>

@@ -7,7 +7,6 @@
 #include "experiment/files/html.hpp"
 #include "experiment/report/report_figures.hpp"
 #include "experiment/report/report_page.hpp"
-#include "experiment/report/report_plots.hpp"
 
 namespace experiment {
 

@@ -11,9 +11,6 @@
 
 #include "experiment/files/html.hpp"
 #include "experiment/report/report_figures.hpp"
-#include "experiment/report/report_plots.hpp"
-#include "experiment/report/run_words.hpp"
-#include "experiment/report/study_report.hpp"
 #include "experiment/run/version.hpp"
 
 namespace experiment {

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "experiment/files/json_reader.hpp"
 #include "experiment/results/run_metrics.hpp"
 #include "experiment/results/run_record.hpp"
-#include "experiment/score/judgement.hpp"
+#include "experiment/score/rule_verdict.hpp"
 
 namespace experiment {
 
@@ -37,5 +40,47 @@ std::string list_html(const std::vector<std::string>& texts);
 std::string facts_table(const std::vector<std::pair<std::string, std::string>>& facts);
 /// Returns the version of the program that wrote the page.
 std::string made_by_html();
+
+/// Returns the plots of a directory as HTML, each with its caption (by file name; default: the name); lists the plots
+/// that are missing or not a complete PNG file.
+std::string plots_html(const std::string& directory, const std::vector<std::string>& files,
+                       const std::map<std::string, std::string>& captions);
+
+/// Returns the plots of a run.
+std::string run_plots_html(const RunRecord& run);
+
+/// Returns whether the bytes are a PNG file from its signature to its last chunk, in which each checksum is valid.
+bool is_whole_png(std::string_view bytes);
+
+/// Describes the outcome of rules in one line: `7 of 8 rules hold, 1 failed.`  Empty when there are none.
+std::string rules_in_words(const std::vector<RunRecord::Rule>& rules);
+
+/// Describes the results of the metrics, one sentence each:
+/// `auv localizes itself to 0.91 m rms (cooperative); alone: 61 m rms, 138 m at the end, after 2.81 km.`
+std::vector<std::string> findings_in_words(const std::vector<RunMetric>& metrics);
+/// Describes the contacts between bodies: `auv4 hits rock at 105.7 s, 3 times in all.`
+std::vector<std::string> contacts_in_words(const RunRecord& run);
+
+/// Returns a length in a readable unit: `0.91 m`, `138 m`, `2.81 km`.
+std::string length_text(double length_m);
+
+/// Returns the page of a study's folder, from its study.json.  Throws std::runtime_error with file and reason.
+std::string study_report(const std::string& directory);
+
+/// Returns the part of a study's page about its algorithms of cooperative navigation: which one is best in each world,
+/// a chart of the rms over the bound, a table of algorithms and worlds, and differences in pairs.  Empty for a study
+/// without algorithms.  Throws std::runtime_error with the key and the rule.
+std::string study_algorithms_html(const JsonReader& in);
+
+/// Parts of the page of a study, from its study.json.  Each is empty when an older file lacks the data.  They throw
+/// std::runtime_error with the key and the rule.
+
+/// Returns curves of the figures over each factor, and of means over the number of seeds, as SVG.  `units`: of figures.
+std::string study_charts_html(const JsonReader& in, const std::map<std::string, std::string>& units);
+/// Returns the table of differences in pairs of equal seeds.
+std::string study_comparisons_html(const JsonReader& in);
+/// Returns the runs with the largest and smallest figures, with links to their pages and films in the folder of the
+/// study.
+std::string study_extremes_html(const JsonReader& in, const std::string& directory);
 
 }  // namespace experiment

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiment/report/report_plots.hpp"
-
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
+#include <span>
 #include <stdexcept>
 
 #include "experiment/files/html.hpp"
-#include "experiment/files/png_check.hpp"
+#include "experiment/report/report_page.hpp"
 #include "experiment/results/run_plots.hpp"
+#include "sim/base/crc32.hpp"
 #include "sim/base/log.hpp"
 
 namespace experiment {
-
 namespace {
 
 namespace fs = std::filesystem;
@@ -75,6 +75,34 @@ std::string plots_html(const std::string& directory, const std::vector<std::stri
 
 std::string run_plots_html(const RunRecord& run) {
   return plots_html(run.directory, plots_of(run), captions_of_run());
+}
+
+namespace {
+
+std::uint32_t number_at(std::string_view bytes, std::size_t at) {
+  std::uint32_t number = 0;
+  for (std::size_t i = 0; i < 4; ++i) number = number << 8 | static_cast<unsigned char>(bytes[at + i]);
+  return number;
+}
+
+}  // namespace
+
+// Portable Network Graphics (W3C), section 5: chunks of length, type, data and CRC-32 of type and data.
+bool is_whole_png(std::string_view bytes) {
+  constexpr std::string_view signature = "\x89PNG\r\n\x1a\n";
+  constexpr std::size_t around = 12;  // bytes of a chunk in addition to its data
+  if (!bytes.starts_with(signature)) return false;
+  bool first = true;
+  for (std::size_t at = signature.size(); bytes.size() - at >= around; first = false) {
+    const std::size_t length = number_at(bytes, at);
+    if (length > bytes.size() - at - around) return false;
+    const std::string_view body = bytes.substr(at + 4, 4 + length);
+    if (sim::crc32(std::as_bytes(std::span(body))) != number_at(bytes, at + 8 + length)) return false;
+    if (first && !body.starts_with("IHDR")) return false;
+    at += around + length;
+    if (body.starts_with("IEND")) return at == bytes.size();
+  }
+  return false;
 }
 
 }  // namespace experiment

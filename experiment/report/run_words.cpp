@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiment/report/run_words.hpp"
-
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -9,6 +7,8 @@
 #include <map>
 #include <set>
 #include <string_view>
+
+#include "experiment/report/report_page.hpp"
 
 namespace experiment {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiment/report/study_charts.hpp"
-
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 
 #include "experiment/files/html.hpp"
 #include "experiment/report/chart_axis.hpp"
+#include "experiment/report/report_page.hpp"
 #include "sim/base/number.hpp"
 
 namespace experiment {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiment/report/study_report.hpp"
-
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -10,12 +8,8 @@
 
 #include "experiment/files/html.hpp"
 #include "experiment/files/json_reader.hpp"
-#include "experiment/report/algorithm_report.hpp"
 #include "experiment/report/report_figures.hpp"
 #include "experiment/report/report_page.hpp"
-#include "experiment/report/report_plots.hpp"
-#include "experiment/report/run_words.hpp"
-#include "experiment/report/study_charts.hpp"
 
 namespace experiment {
 

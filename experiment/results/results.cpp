@@ -14,11 +14,11 @@
 #include <utility>
 #include <vector>
 
+#include "bridges/base/json_text.hpp"
 #include "experiment/files/gnuplot.hpp"
-#include "experiment/results/audit_text.hpp"
-#include "experiment/results/results_world.hpp"
+#include "experiment/results/results_folder.hpp"
 #include "experiment/results/run_plots.hpp"
-#include "experiment/results/verdict_json.hpp"
+#include "experiment/results/summary_file.hpp"
 #include "sim/base/log.hpp"
 #include "sim/base/number.hpp"
 
@@ -230,7 +230,7 @@ std::string Summary::to_json() const {
   if (!snapshot.empty()) json["snapshot"] = snapshot;
   if (!snapshot.empty()) json["metrics_from_s"] = from_s;
   // The name of a client may contain any bytes: invalid UTF-8 must not prevent the summary.
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return bridges::json_text(json, 2) + "\n";
 }
 
 std::string Summary::to_text() const {

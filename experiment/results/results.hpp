@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "bridges/control/run_audit.hpp"
-#include "bridges/lockstep/lockstep_summary.hpp"
+#include "bridges/lockstep/lockstep_service.hpp"
 #include "experiment/results/summary_file.hpp"
-#include "experiment/score/judgement.hpp"
 #include "experiment/score/link_counts.hpp"
+#include "experiment/score/rule_verdict.hpp"
 #include "experiment/score/scoring.hpp"
 #include "sim/config/config_node.hpp"
 #include "sim/director/script.hpp"

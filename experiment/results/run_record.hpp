@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "experiment/score/judgement.hpp"
+#include "experiment/score/rule_verdict.hpp"
 
 namespace experiment {
 

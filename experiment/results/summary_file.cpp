@@ -2,6 +2,7 @@
 #include "experiment/results/summary_file.hpp"
 
 #include <fcntl.h>
+#include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -12,7 +13,6 @@
 #include <utility>
 
 namespace experiment {
-
 namespace {
 
 std::runtime_error cannot_write(const std::string& path, int error_number) {
@@ -73,6 +73,34 @@ void SummaryFile::write(const std::string& text) {
     unlink(room.path.c_str());
     throw cannot_write(path_, error);
   }
+}
+
+nlohmann::ordered_json audit_json(const std::vector<bridges::AuditEntry>& audit) {
+  auto json = nlohmann::ordered_json::array();
+  for (const bridges::AuditEntry& audit_entry : audit)
+    json.push_back({{"sim_time_s", audit_entry.sim_time_s},
+                    {"kind", audit_entry.kind},
+                    {"client", audit_entry.client},
+                    {"signed_by", audit_entry.signer},
+                    {"text", audit_entry.text}});
+  return json;
+}
+
+std::string audit_text(const bridges::AuditEntry& audit_entry) {
+  if (audit_entry.kind == "contradiction")
+    return fmt::format("{} (at {:.2f} s)", audit_entry.text, audit_entry.sim_time_s);
+  return fmt::format("{}{}{} at {:.2f} s by {}", audit_entry.kind, audit_entry.text.empty() ? "" : " ",
+                     audit_entry.text, audit_entry.sim_time_s,
+                     bridges::who_asked(audit_entry.client, audit_entry.signer));
+}
+
+nlohmann::ordered_json json_of(const RuleVerdict& verdict) {
+  nlohmann::ordered_json json{{"rule", verdict.rule}, {"passed", verdict.passed}};
+  json["left"] = verdict.left;  // NaN becomes null
+  json["right"] = verdict.right;
+  json["margin"] = verdict.margin;
+  json["result"] = verdict.result;
+  return json;
 }
 
 }  // namespace experiment

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "bridges/base/file_descriptor.hpp"
+#include "bridges/control/run_audit.hpp"
+#include "experiment/score/rule_verdict.hpp"
 
 namespace experiment {
 
@@ -36,5 +39,14 @@ class SummaryFile {
   std::string path_;
   std::vector<Room> rooms_;
 };
+
+/// Returns the entries of `control.audit` in summary.json.
+nlohmann::ordered_json audit_json(const std::vector<bridges::AuditEntry>& audit);
+
+/// Returns one line: `quit at 12.30 s by client 'shoal-control-4711'`.
+std::string audit_text(const bridges::AuditEntry& audit_entry);
+
+/// Returns an entry of `rules` in summary.json and study.json.
+nlohmann::ordered_json json_of(const RuleVerdict& verdict);
 
 }  // namespace experiment

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "bridges/base/bus_error.hpp"
-#include "bridges/bus/bus_reach.hpp"
+#include "bridges/bus/network_check.hpp"
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/vehicle/run_hash.hpp"
 

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "experiment/run/time_control.hpp"
-#include "experiment/terminal/key_sequences.hpp"
 #include "experiment/terminal/terminal_keys.hpp"
+#include "experiment/terminal/terminal_parser.hpp"
 #include "sim/run/run_control.hpp"
 
 namespace experiment {

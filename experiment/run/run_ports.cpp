@@ -10,7 +10,6 @@
 #include <stdexcept>
 
 #include "bridges/serial/serial_port.hpp"
-#include "experiment/run/run_name.hpp"
 #include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
 

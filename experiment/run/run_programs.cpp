@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "experiment/results/run_error.hpp"
-#include "experiment/run/run_name.hpp"
+#include "experiment/run/run_ports.hpp"
 #include "sim/base/log.hpp"
 
 namespace experiment {

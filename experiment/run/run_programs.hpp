@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "bridges/control/time_machine.hpp"
+#include "bridges/control/sim_service.hpp"
 #include "experiment/process/process_group.hpp"
 #include "experiment/results/results.hpp"
 #include "experiment/run/run_parts.hpp"

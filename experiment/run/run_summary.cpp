@@ -5,14 +5,14 @@
 
 #include "devices/common/serial_port.hpp"
 #include "devices/comms/message_modem.hpp"
-#include "experiment/process/channel_check.hpp"
+#include "experiment/process/process_check.hpp"
 #include "experiment/run/run.hpp"
 #include "experiment/run/version.hpp"
 #include "experiment/snapshot/run_identity.hpp"
 #include "sim/acoustics/channel.hpp"
 #include "sim/base/log.hpp"
 #include "sim/base/thread_pool.hpp"
-#include "sim/world/end_check.hpp"
+#include "sim/world/world_checks.hpp"
 #include "sim/world/world_state.hpp"
 
 namespace experiment {

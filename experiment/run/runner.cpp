@@ -4,9 +4,7 @@
 #include <optional>
 
 #include "experiment/process/process_check.hpp"
-#include "experiment/results/earlier_run.hpp"
-#include "experiment/results/results_lock.hpp"
-#include "experiment/results/results_world.hpp"
+#include "experiment/results/results_folder.hpp"
 #include "experiment/results/run_error.hpp"
 #include "experiment/run/run.hpp"
 #include "experiment/run/version.hpp"

@@ -9,9 +9,7 @@
 #include <utility>
 
 #include "bridges/control/sim_service.hpp"
-#include "bridges/control/time_machine.hpp"
 #include "experiment/run/run_inputs.hpp"
-#include "experiment/run/timeline.hpp"
 #include "experiment/score/scoring.hpp"
 #include "experiment/snapshot/snapshot_file.hpp"
 #include "experiment/time/world_time.hpp"
@@ -19,6 +17,19 @@
 #include "sim/world/world.hpp"
 
 namespace experiment {
+
+/// Interface to rewind and restore a run.
+class Timeline {
+ public:
+  virtual ~Timeline() = default;
+  /// Prepares a move; the branch is still the old one.  `ours`: the new one starts at a step of this run.  The world is
+  /// not moved when this throws.
+  virtual void leave_branch(std::int64_t to_step, bool ours) = 0;
+  /// Replaces start_branch() when the move failed and the world was restored.
+  virtual void hold_here() = 0;
+  /// Completes a move.
+  virtual void start_branch(bool ours) = 0;
+};
 
 /// Time control of a running world: a WorldTime, and the inputs since its oldest state, with which the run is taken to
 /// any step since then; and snapshot files.

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "bridges/bus/lcm_version.hpp"
+#include "bridges/bus/lcm_bus.hpp"
 #include "experiment/run/version.hpp"
 #include "sim/ode/ode_version.hpp"
 

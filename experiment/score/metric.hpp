@@ -3,6 +3,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <map>
@@ -97,6 +98,9 @@ class Metric {
 };
 
 /// Returns the 95 % quantile of the chi-square distribution with `dimensions` (2 or 3) degrees of freedom.
-double chi_square_95(int dimensions);
+inline double chi_square_95(int dimensions) {
+  // Quantile tables of the chi-square distribution; with 2 degrees of freedom it is -2 ln 0.05.
+  return dimensions == 2 ? -2 * std::log(0.05) : 7.814727903251179;
+}
 
 }  // namespace experiment

@@ -113,4 +113,15 @@ void Scoring::warn_of_silence(sim::Warnings& warnings) const {
   }
 }
 
+std::string restore_scores(Scoring& scoring, const sim::Bytes& saved) {
+  try {
+    auto scores = sim::StateArchive::restorer(saved);
+    scoring.visit_state(scores, History::whole);
+    scores.end();
+  } catch (const sim::SnapshotError& error) {
+    return std::string("the scores begin with the log: ") + error.what();
+  }
+  return {};
+}
+
 }  // namespace experiment

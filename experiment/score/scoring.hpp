@@ -11,6 +11,7 @@
 #include "experiment/score/rule_verdict.hpp"
 #include "experiment/score/truth_history.hpp"
 #include "sim/config/warnings.hpp"
+#include "sim/state/state_archive.hpp"
 #include "sim/world/world.hpp"
 
 namespace experiment {
@@ -61,5 +62,9 @@ class Scoring {
   std::vector<std::unique_ptr<Metric>> metrics_;
   FirstContacts contacts_;
 };
+
+/// Continues scores from those of the snapshot with which a record begins.  Returns why that is not possible, and the
+/// scores begin with the log; empty: they continue.
+std::string restore_scores(Scoring& scoring, const sim::Bytes& saved);
 
 }  // namespace experiment

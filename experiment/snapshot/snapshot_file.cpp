@@ -13,7 +13,7 @@
 #include <iterator>
 #include <span>
 
-#include "experiment/files/no_links.hpp"
+#include "experiment/files/part_file.hpp"
 #include "experiment/snapshot/run_identity.hpp"
 #include "sim/base/crc32.hpp"
 #include "sim/config/message_text.hpp"
@@ -119,17 +119,11 @@ Snapshot snapshot_from_bytes(const sim::Bytes& bytes, const std::string& path) {
 void write_snapshot(const std::string& path, const Snapshot& snapshot) {
   const sim::Bytes bytes = to_bytes(snapshot);
   // The number of the process, so that two runs do not write one file.
-  const std::string unfinished = path + ".part" + std::to_string(getpid());
-  const auto file = make_part_file<SnapshotFileError>(path, unfinished);
-  try {
-    write_all(file.number(), bytes, path);
-    // Some file systems cannot be synchronized (EINVAL).
-    if (fsync(file.number()) != 0 && errno != EINVAL) throw cannot("written", path, errno);
-    if (rename(unfinished.c_str(), path.c_str()) != 0) throw cannot("written", path, errno);
-  } catch (...) {
-    unlink(unfinished.c_str());
-    throw;
-  }
+  PartFile<SnapshotFileError> file(path, ".part" + std::to_string(getpid()));
+  write_all(file.number(), bytes, path);
+  // Some file systems cannot be synchronized (EINVAL).
+  if (fsync(file.number()) != 0 && errno != EINVAL) throw cannot("written", path, errno);
+  file.finish();
 }
 
 Snapshot read_snapshot(const std::string& path) {

@@ -13,13 +13,12 @@
 #include "experiment/study/study_rules.hpp"
 #include "messages/yaml/message_writer.hpp"
 #include "sim/base/number.hpp"
+#include "sim/config/config_node.hpp"
 #include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/shipped_files.hpp"
-#include "sim/config/yaml_writer.hpp"
 #include "sim/random/random.hpp"
 #include "sim/world_file/file_kind.hpp"
-#include "sim/world_file/rule_list.hpp"
+#include "sim/world_file/metric_config.hpp"
 
 namespace experiment {
 

@@ -13,8 +13,8 @@
 
 #include "experiment/files/json_reader.hpp"
 #include "experiment/study/study_runs.hpp"
+#include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/shipped_files.hpp"
 
 namespace experiment {
 

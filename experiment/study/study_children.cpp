@@ -14,12 +14,11 @@
 #include <stdexcept>
 #include <thread>
 
+#include "bridges/base/child_program.hpp"
 #include "bridges/control/other_simulators.hpp"
 #include "experiment/files/no_links.hpp"
-#include "experiment/process/child_program.hpp"
 #include "experiment/process/signals.hpp"
 #include "experiment/run/version.hpp"
-#include "experiment/study/run_claim.hpp"
 #include "experiment/study/run_files.hpp"
 #include "experiment/study/study_algorithms.hpp"
 #include "experiment/study/study_runs.hpp"
@@ -166,7 +165,7 @@ class StudyChildren {
   // The child has its own process group: Ctrl-C is forwarded to it.
   static pid_t spawn(const std::string& program, const std::vector<std::string>& arguments, const std::string& log) {
     pid_t pid = 0;
-    const int error = start_child({program, arguments, own_environment(), log}, pid);
+    const int error = bridges::start_child({program, arguments, bridges::own_environment(), log}, pid);
     if (error != 0)
       throw std::runtime_error("cannot start " + arguments.front() + " for a run: " + std::strerror(error));
     return pid;

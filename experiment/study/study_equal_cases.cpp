@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiment/study/study_equal_cases.hpp"
-
 #include <algorithm>
 #include <map>
 
+#include "experiment/study/study_results.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace experiment {

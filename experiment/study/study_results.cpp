@@ -9,11 +9,11 @@
 #include <numeric>
 #include <set>
 
+#include "bridges/base/json_text.hpp"
 #include "experiment/files/csv.hpp"
-#include "experiment/results/verdict_json.hpp"
+#include "experiment/results/summary_file.hpp"
 #include "experiment/run/version.hpp"
 #include "experiment/study/algorithm_table.hpp"
-#include "experiment/study/study_equal_cases.hpp"
 #include "experiment/study/study_rules.hpp"
 #include "experiment/study/study_tables.hpp"
 
@@ -328,7 +328,7 @@ std::string StudyResults::to_json(int exit_code) const {
   if (const auto flag = as_flag(judgement())) json["passed"] = *flag && exit_code == 0;
   json["exit_code"] = exit_code;
   json["shoal"] = short_version();
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return bridges::json_text(json, 2) + "\n";
 }
 
 }  // namespace experiment

@@ -114,4 +114,18 @@ void check_outputs(const std::string& directory, const StudyConfig& config);
 void write_study(const std::string& directory, const LoadedStudy& study, const std::vector<StudyRun>& runs,
                  const StudyResults& results, int exit_code);
 
+/// Cases of a study with equal results.
+struct EqualCases {
+  std::vector<std::string> cases;  ///< two or more, as the study orders them
+  bool same_settings = false;      ///< they change the same settings; otherwise a setting has no effect
+  bool same_state = false;         ///< the final states are equal, too
+};
+
+/// Groups of cases whose runs have the same figures for every seed or, where a world has no figures, the same final
+/// state.  A case with a run without a result is in no group.
+std::vector<EqualCases> equal_cases(const LoadedStudy& study, const std::vector<StudyRun>& runs);
+
+/// Returns a readable sentence about a group.
+std::string equal_cases_text(const EqualCases& group);
+
 }  // namespace experiment

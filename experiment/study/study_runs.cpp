@@ -7,7 +7,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "experiment/process/shell_word.hpp"
+#include "bridges/base/child_program.hpp"
 #include "experiment/process/signals.hpp"
 #include "experiment/run/version.hpp"
 #include "experiment/study/run_files.hpp"
@@ -103,8 +103,9 @@ std::string inputs_of(const LoadedStudy& study, const StudyRun& run) {
 
 std::string command_of(const LoadedStudy& study, const StudyRun& run) {
   const StudyConfig& config = study.config;
-  std::string command = fmt::format("shoal run {} --seed {}", shell_word(config.cases[run.in_case].world), run.seed);
-  for (const std::string& set : sets_of(study, run)) command += " --set " + shell_word(set);
+  std::string command =
+      fmt::format("shoal run {} --seed {}", bridges::shell_word(config.cases[run.in_case].world), run.seed);
+  for (const std::string& set : sets_of(study, run)) command += " --set " + bridges::shell_word(set);
   if (config.duration_s) command += fmt::format(" --duration {}", *config.duration_s);
   return command + (config.launch ? " --launch" : " --bus none --no-serial-ports");
 }

@@ -4,7 +4,10 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 
@@ -14,7 +17,6 @@
 #include "sim/world/world_state.hpp"
 
 namespace experiment {
-
 namespace {
 
 /// The interval between two kept states is at least this multiple of the cost of the last one (the following steps are
@@ -137,6 +139,44 @@ std::int64_t WorldTime::step_before(double seconds, std::int64_t first_step) con
 
 std::string WorldTime::place() const {
   return fmt::format("step {}, {:.6g} s", world_.step_number(), sim::to_seconds(world_.now()));
+}
+
+namespace {
+
+using Sizes = std::array<std::uint64_t, 3>;
+
+}  // namespace
+
+sim::Bytes joined(const SavedRun& saved) {
+  sim::Bytes all;
+  all.reserve(saved.state.size() + saved.scores.size() + saved.owners.size() + 64);
+  auto sizes = sim::StateArchive::saver();
+  sizes.section("sizes");  // the last one: split() finds the sizes at the end
+  for (const sim::Bytes* part : {&saved.state, &saved.scores, &saved.owners}) {
+    all.insert(all.end(), part->begin(), part->end());
+    std::uint64_t size = part->size();
+    sizes(size);
+  }
+  sizes.end();
+  const sim::Bytes end = sizes.take_bytes();
+  all.insert(all.end(), end.begin(), end.end());
+  return all;
+}
+
+SavedRun split(const sim::Bytes& bytes) {
+  Sizes sizes{};
+  std::memcpy(sizes.data(), bytes.data() + bytes.size() - sizeof sizes, sizeof sizes);
+  auto at = bytes.begin();
+  const auto next = [&at](std::uint64_t size) {
+    const auto begin = at;
+    at += static_cast<std::ptrdiff_t>(size);
+    return sim::Bytes(begin, at);
+  };
+  SavedRun saved;
+  saved.state = next(sizes[0]);
+  saved.scores = next(sizes[1]);
+  saved.owners = next(sizes[2]);
+  return saved;
 }
 
 }  // namespace experiment

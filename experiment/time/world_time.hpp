@@ -9,11 +9,21 @@
 #include "bridges/control/sim_service.hpp"
 #include "experiment/score/scoring.hpp"
 #include "experiment/snapshot/snapshot_ring.hpp"
-#include "experiment/time/saved_run.hpp"
+#include "sim/bus/bus.hpp"
 #include "sim/run/run_control.hpp"
 #include "sim/world/world.hpp"
 
 namespace experiment {
+
+/// State of a run at one step: of its world, of its scores, and of the owners of its vehicles (SimService).
+struct SavedRun {
+  sim::Bytes state, scores, owners;
+};
+
+/// Returns the three as the sections of one archive, of which a SnapshotRing can take the difference part by part.
+sim::Bytes joined(const SavedRun& saved);
+/// Returns what joined() has joined.
+SavedRun split(const sim::Bytes& bytes);
 
 /// Time of a world that its users pause, step and take back: the requests about it, the step or event at which it
 /// pauses, and its states of the last seconds.

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "sim/config/config_node.hpp"
+#include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/shipped_files.hpp"
 
 namespace experiment {
 

@@ -8,8 +8,8 @@
 #include <map>
 #include <numbers>
 
+#include "sim/config/config_node.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/yaml_writer.hpp"
 #include "sim/motion/motion_frames.hpp"
 
 namespace motion {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "motion/formats/motion_format.hpp"
-#include "motion/formats/motion_parts.hpp"
 
 namespace motion {
 

@@ -5,8 +5,8 @@
 
 #include "motion/formats/pose_table.hpp"
 #include "motion/formats/yaml_text.hpp"
+#include "sim/config/config_node.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/yaml_writer.hpp"
 
 // joint_trajectory_controller goes in straight lines between points with positions only, as written here; between two
 // with velocities the path is cubic, between two with velocities and accelerations quintic.

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "motion/formats/motion_parts.hpp"
+#include "motion/formats/motion_format.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace motion {

@@ -7,8 +7,8 @@
 #include <cctype>
 
 #include "motion/formats/pose_table.hpp"
+#include "sim/config/config_node.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/yaml_writer.hpp"
 
 namespace motion {
 

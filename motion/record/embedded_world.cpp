@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "motion/analysis/motion_file.hpp"
+#include "sim/config/config_node.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/yaml_writer.hpp"
 #include "sim/world_file/data_files.hpp"
 
 namespace motion {

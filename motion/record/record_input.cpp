@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-#include "experiment/drive/drive_error.hpp"
+#include "experiment/drive/drive_profile.hpp"
 
 namespace motion {
 

@@ -9,10 +9,9 @@
 #include "motion/analysis/motion_edit.hpp"
 #include "sim/base/number.hpp"
 #include "sim/base/whole_file.hpp"
+#include "sim/config/config_node.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/utf8.hpp"
-#include "sim/config/yaml_writer.hpp"
-#include "sim/motion/joint_name.hpp"
 #include "sim/motion/motion.hpp"
 
 namespace motion {

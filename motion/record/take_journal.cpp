@@ -9,8 +9,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "sim/config/config_node.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/yaml_writer.hpp"
 
 namespace motion {
 

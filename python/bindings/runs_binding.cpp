@@ -19,7 +19,7 @@
 #include "python/bindings/in_use.hpp"
 #include "python/world/error.hpp"
 #include "sim/base/log.hpp"
-#include "sim/config/shipped_files.hpp"
+#include "sim/config/file_access.hpp"
 
 namespace py = pybind11;
 

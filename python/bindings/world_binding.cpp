@@ -16,7 +16,6 @@
 #include "python/bindings/message_objects.hpp"
 #include "python/world/error.hpp"
 #include "python/world/in_process_world.hpp"
-#include "python/world/vehicle_motion.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world/world_state.hpp"
 

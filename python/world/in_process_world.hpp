@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "python/world/last_messages.hpp"
 #include "python/world/world_channels.hpp"
+#include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world/world_state.hpp"
 #include "sim/world_file/load_world.hpp"
@@ -87,5 +87,15 @@ class InProcessWorld {
   std::string fault_;                              // of a step that failed; empty: none
   std::vector<std::weak_ptr<sim::Mailbox>> mailboxes_;  // of the program
 };
+
+/// True motion of a vehicle, in the layout of the NumPy type that World.states() returns.
+struct Motion {
+  double position_m[3];    ///< in world axes
+  double orientation[4];   ///< w x y z, from vehicle to world axes, w >= 0
+  double velocity_mps[3];  ///< of the origin of the vehicle, in world axes
+  double rates_radps[3];   ///< angular velocity in vehicle axes
+};
+
+Motion motion_of(const sim::Vehicle& vehicle);
 
 }  // namespace python

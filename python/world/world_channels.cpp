@@ -54,4 +54,16 @@ bool may_have_nan(const std::string& type) {
   return std::find(types.begin(), types.end(), type) != types.end();
 }
 
+void LastMessages::publish(std::string_view channel, std::span<const std::byte> payload, sim::Time at) {
+  auto found = last_.find(channel);
+  if (found == last_.end()) found = last_.emplace(channel, sim::Bytes()).first;
+  found->second.assign(payload.begin(), payload.end());
+  bus_.publish(channel, payload, at);
+}
+
+const sim::Bytes* LastMessages::find(std::string_view channel) const {
+  const auto found = last_.find(channel);
+  return found == last_.end() ? nullptr : &found->second;
+}
+
 }  // namespace python

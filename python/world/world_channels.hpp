@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "sim/bus/in_process_bus.hpp"
 #include "sim/world/world.hpp"
 
 namespace python {
@@ -29,5 +30,25 @@ struct WorldChannels {
 
 /// Returns whether a command of this type may have NaN, which leaves a value as it is.
 bool may_have_nan(const std::string& type);
+
+/// Bus within the process that also keeps the last payload of every channel.  Not thread-safe.
+class LastMessages final : public sim::Bus {
+ public:
+  void publish(std::string_view channel, std::span<const std::byte> payload, sim::Time at) override;
+  std::unique_ptr<sim::Mailbox> open_mailbox(const std::string& channel, std::size_t capacity) override {
+    return bus_.open_mailbox(channel, capacity);
+  }
+  sim::BusCounts counts() const override { return bus_.counts(); }
+
+  /// Returns the last payload of a channel; null when nothing was published on it.
+  const sim::Bytes* find(std::string_view channel) const;
+  const std::map<std::string, sim::Bytes, std::less<>>& all() const { return last_; }
+  /// Forgets the payloads: after a restore they are those of another future.
+  void clear() { last_.clear(); }
+
+ private:
+  sim::InProcessBus bus_;
+  std::map<std::string, sim::Bytes, std::less<>> last_;
+};
 
 }  // namespace python

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "python/world/error.hpp"
-#include "python/world/vehicle_motion.hpp"
+#include "python/world/in_process_world.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/ode/physics_fault.hpp"
 

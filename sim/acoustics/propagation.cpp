@@ -7,9 +7,9 @@
 #include <numbers>
 #include <span>
 
-#include "sim/acoustics/echoes.hpp"
+#include "sim/acoustics/multipath.hpp"
 #include "sim/acoustics/rays/ray_tables.hpp"
-#include "sim/medium/absorption.hpp"
+#include "sim/medium/sea_water.hpp"
 
 namespace sim {
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "sim/acoustics/propagation.hpp"
-#include "sim/acoustics/ray_paths.hpp"
 #include "sim/acoustics/rays/caustic.hpp"
 #include "sim/acoustics/rays/ray_tables.hpp"
 #include "sim/acoustics/sound_path.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/medium/absorption.hpp"
+#include "sim/medium/sea_water.hpp"
 
 namespace sim {
 

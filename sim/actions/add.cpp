@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <memory>
 
-#include "sim/actions/place_choice.hpp"
+#include "sim/actions/random_choice.hpp"
 #include "sim/director/action_run.hpp"
 #include "sim/director/script.hpp"
 #include "sim/director/stage.hpp"
 #include "sim/model/object_config.hpp"
 #include "sim/script/action_registry.hpp"
-#include "sim/vehicle/world_error.hpp"
+#include "sim/vehicle/entities.hpp"
 
 namespace sim {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <set>
 
-#include "sim/bus/utime_stamp.hpp"
+#include "sim/bus/bus.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/director/action_run.hpp"

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/actions/target_choice.hpp"
+#include "sim/actions/random_choice.hpp"
 #include "sim/director/action_run.hpp"
 #include "sim/director/stage.hpp"
 #include "sim/script/action_registry.hpp"
 #include "sim/vehicle/entities.hpp"
-#include "sim/vehicle/world_error.hpp"
 
 namespace sim {
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/base/math.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+
 namespace sim {
 
 Matrix3d rotation_from_rpy(const Vector3d& rpy_rad) {
@@ -33,6 +36,27 @@ double wrap_angle(double angle_rad) {
   if (std::abs(angle_rad) < std::numbers::pi) return angle_rad;  // as the remainder, but without its cost
   const double wrapped = std::remainder(angle_rad, 2 * std::numbers::pi);
   return wrapped <= -std::numbers::pi ? wrapped + 2 * std::numbers::pi : wrapped;
+}
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+Vector3d symmetric_eigenvalues(const Matrix3d& matrix) {
+  return Eigen::SelfAdjointEigenSolver<Matrix3d>(matrix, Eigen::EigenvaluesOnly).eigenvalues();
+}
+
+double smallest_eigenvalue(const Matrix6d& matrix) {
+  return Eigen::SelfAdjointEigenSolver<Matrix6d>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[0];
+}
+
+double spectral_radius(const Matrix6d& matrix) {
+  return Eigen::EigenSolver<Matrix6d>(matrix, false).eigenvalues().cwiseAbs().maxCoeff();
+}
+
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b, std::optional<double> threshold) {
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+  if (threshold) solver.setThreshold(*threshold);
+  solver.compute(A);
+  return solver.solve(b);
 }
 
 }  // namespace sim

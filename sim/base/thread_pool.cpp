@@ -12,9 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/base/cpu_clock.hpp"
 #include "sim/base/shared_work.hpp"
-#include "sim/base/work_within.hpp"
+#include "sim/base/time.hpp"
 
 namespace sim {
 

@@ -41,4 +41,8 @@ void for_each_block(ThreadPool* threads, std::size_t count, const Work& work) {
                     [&](std::size_t i) { work(i * block, std::min(count, (i + 1) * block)); });
 }
 
+/// Does what ThreadPool::for_each() does, within work that a pool shares: by the threads of that pool.  Elsewhere the
+/// calling thread does it alone.  For large pieces such as images, of which there may be fewer than threads.
+void for_each_within(std::size_t count, const std::function<void(std::size_t)>& work);
+
 }  // namespace sim

@@ -5,7 +5,7 @@
 #include <array>
 #include <limits>
 
-#include "sim/base/work_within.hpp"
+#include "sim/base/thread_pool.hpp"
 #include "sim/camera/water_view.hpp"
 
 namespace sim {

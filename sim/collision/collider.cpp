@@ -9,7 +9,6 @@
 #include "sim/collision/terrain_geom.hpp"
 #include "sim/ode/find_contacts.hpp"
 #include "sim/ode/ode_math.hpp"
-#include "sim/ode/wheel_contacts.hpp"
 
 namespace sim {
 namespace {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -91,5 +92,12 @@ const std::string* name_of(const ConfigNode& item);
 
 /// Returns YAML text that parses to the same tree.
 std::string to_yaml(const ConfigNode& node);
+
+/// Parses the text of a file, as parse_config_text().  The trees of the last files are kept, for requests that spawn
+/// many vehicles of a file: a file with the same name and text is not parsed again.  Thread-safe.
+ConfigNode parse_file_text(const std::string& text, const std::string& path, Diagnostics& diagnostics);
+
+/// Returns the tree as YAML on one line, such as `{name: left, axis: [0, 1, 0]}`.  Stops soon after `limit` bytes.
+std::string to_flow_yaml(const ConfigNode& node, std::size_t limit = static_cast<std::size_t>(-1));
 
 }  // namespace sim

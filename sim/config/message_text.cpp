@@ -9,8 +9,7 @@
 #include <numeric>
 #include <utility>
 
-#include "sim/config/other_names.hpp"
-#include "sim/config/yaml_writer.hpp"
+#include "sim/config/config_node.hpp"
 
 namespace sim {
 
@@ -157,13 +156,13 @@ std::string list_text(const std::vector<std::string>& names, std::size_t max) {
   return text;
 }
 
-std::string closest_name(std::string_view misspelt, const std::vector<std::string>& names) {
+std::string closest_name(std::string_view misspelled, const std::vector<std::string>& names) {
   std::string closest;
-  std::size_t min = std::max<std::size_t>(1, std::min<std::size_t>(3, misspelt.size() / 3)) + 1;
+  std::size_t min = std::max<std::size_t>(1, std::min<std::size_t>(3, misspelled.size() / 3)) + 1;
   for (const std::string& name : names) {
-    const std::size_t longer = std::max(name.size(), misspelt.size());
-    if (longer - std::min(name.size(), misspelt.size()) >= min) continue;
-    const std::size_t distance = edit_distance(misspelt, name);
+    const std::size_t longer = std::max(name.size(), misspelled.size());
+    if (longer - std::min(name.size(), misspelled.size()) >= min) continue;
+    const std::size_t distance = edit_distance(misspelled, name);
     if (distance >= min || distance >= name.size()) continue;  // one letter is not a misspelling of another
     min = distance;
     closest = name;
@@ -171,14 +170,14 @@ std::string closest_name(std::string_view misspelt, const std::vector<std::strin
   return closest;
 }
 
-std::string did_you_mean(std::string_view misspelt, const std::vector<std::string>& names) {
+std::string did_you_mean(std::string_view misspelled, const std::vector<std::string>& names) {
   const auto is_there = [&](std::string_view name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
   // Words of other simulators and of ROS come first: no spelling distance would find them.
-  if (const std::string_view here = synonym_of(misspelt); is_there(here))
+  if (const std::string_view here = synonym_of(misspelled); is_there(here))
     return "; did you mean '" + std::string(here) + "'?";
-  const auto [stem, unit] = split_unit(misspelt);
+  const auto [stem, unit] = split_unit(misspelled);
   // The same name in another unit is the likeliest mistake, and the value must change with it.
   for (const std::string& name : names) {
     const auto [other_stem, other_unit] = split_unit(name);
@@ -186,7 +185,7 @@ std::string did_you_mean(std::string_view misspelt, const std::vector<std::strin
     const std::string in_unit = unit.empty() || other_unit.empty() ? "" : ", in " + unit_text(other_unit);
     return "; did you mean '" + name + "'" + in_unit + "?";
   }
-  const std::string meant = closest_name(misspelt, names);
+  const std::string meant = closest_name(misspelled, names);
   return meant.empty() ? "" : "; did you mean '" + meant + "'?";
 }
 

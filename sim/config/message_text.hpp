@@ -33,12 +33,15 @@ std::string with_article(std::string_view word);
 /// Joins names: `a, b, c`; `none` when the list is empty; a long list is cut.
 std::string list_text(const std::vector<std::string>& names, std::size_t max = 40);
 
-/// Returns the name closest to a misspelt one; empty when none is close.
-std::string closest_name(std::string_view misspelt, const std::vector<std::string>& names);
+/// Returns the name closest to a misspelled one; empty when none is close.
+std::string closest_name(std::string_view misspelled, const std::vector<std::string>& names);
 
-/// `; did you mean 'NAME'?` for the name that a misspelt one most likely meant; empty when none is close.  Names that
+/// `; did you mean 'NAME'?` for the name that a misspelled one most likely meant; empty when none is close.  Names that
 /// end with a unit are found without it and with another one: `speed_kmh` gives `; did you mean 'speed_mps', in m/s?`.
-/// A word of other simulators gives that of Shoal (other_names.hpp).
-std::string did_you_mean(std::string_view misspelt, const std::vector<std::string>& names);
+/// A word of other simulators gives that of Shoal (other_names.cpp).
+std::string did_you_mean(std::string_view misspelled, const std::vector<std::string>& names);
+
+/// The name in Shoal of what other simulators name differently, such as `hinge` for `revolute`; empty: none.
+std::string_view synonym_of(std::string_view word);
 
 }  // namespace sim

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/config/other_names.hpp"
-
 #include <algorithm>
 #include <iterator>
 #include <span>
+
+#include "sim/config/message_text.hpp"
 
 namespace sim {
 

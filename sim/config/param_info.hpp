@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace sim {
@@ -86,5 +88,20 @@ struct ParamInfo {
   std::string pattern = {};     ///< regular expression (ECMA) that each text of a list matches; empty: any
   std::vector<std::string> examples = {};  ///< examples of texts that match
 };
+
+/// Merges the keys of several types into one table, each key once and none required.  `types`: word and keys of each
+/// type.  The description of a key that belongs to one or two types names them, unless the key has the name of the
+/// type.
+std::vector<ParamInfo> merged_keys(const std::vector<std::pair<std::string, std::vector<ParamInfo>>>& types);
+
+/// Returns key, type, rule, default and meaning of each key; nested keys are named by their paths as below.
+std::vector<std::array<std::string, 5>> param_rows(const std::vector<ParamInfo>& params);
+
+/// Returns the keys as a Markdown table: key, type, rule, default, meaning.  Keys of a map are written as
+/// `noise.gaussian_std`, keys of the items of a list as `parts[].shape`.
+std::string markdown_table(const std::vector<ParamInfo>& params);
+
+/// Returns the same table as text in columns, for a terminal.
+std::string text_table(const std::vector<ParamInfo>& params);
 
 }  // namespace sim

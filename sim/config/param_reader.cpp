@@ -9,9 +9,9 @@
 #include <limits>
 
 #include "sim/base/number.hpp"
+#include "sim/config/config_node.hpp"
 #include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/yaml_writer.hpp"
 
 namespace sim {
 

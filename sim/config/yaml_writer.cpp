@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/config/yaml_writer.hpp"
-
 #include <algorithm>
 #include <cstdio>
 #include <string_view>
+
+#include "sim/config/config_node.hpp"
 
 namespace sim {
 

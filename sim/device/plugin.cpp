@@ -13,8 +13,8 @@
 #include <sstream>
 #include <vector>
 
+#include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/shipped_files.hpp"
 #include "sim/device/device_registry.hpp"
 
 namespace sim {

@@ -23,4 +23,8 @@ class ConditionWatch {
 /// Makes the watch of a condition; null when none is needed: no condition, or the firing of another event.
 std::unique_ptr<ConditionWatch> make_watch(const Condition& condition, Stage& stage, const Zones& zones);
 
+/// Makes the watch of `NAME touches NAME`.  `any`: every vehicle and object except those made of planes, on which
+/// everything rests.
+std::unique_ptr<ConditionWatch> make_touch_watch(const Condition& condition, Stage& stage);
+
 }  // namespace sim

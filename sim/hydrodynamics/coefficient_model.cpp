@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/base/linear_algebra.hpp"
+#include "sim/base/math.hpp"
 
 namespace sim {
 

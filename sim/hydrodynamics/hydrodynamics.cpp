@@ -12,7 +12,7 @@
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/hydrodynamics/coefficient_model.hpp"
-#include "sim/model/hydrodynamics_checks.hpp"
+#include "sim/model/hydrodynamics_config.hpp"
 #include "sim/physics/physics_world.hpp"
 
 namespace sim {

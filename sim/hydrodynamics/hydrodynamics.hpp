@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "sim/base/thread_pool.hpp"
-#include "sim/hydrodynamics/body_in_water.hpp"
 #include "sim/hydrodynamics/immersed_bodies.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/model/hydrodynamics_config.hpp"

@@ -5,15 +5,24 @@
 #include <string>
 #include <vector>
 
+#include "sim/base/math.hpp"
 #include "sim/base/thread_pool.hpp"
 #include "sim/config/warnings.hpp"
-#include "sim/hydrodynamics/body_in_water.hpp"
 #include "sim/hydrodynamics/immersed_drag.hpp"
 #include "sim/hydrodynamics/immersed_piece.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/physics/body.hpp"
 
 namespace sim {
+
+/// Motion of a body and of the surrounding water in a step, where forces act: Body::motion_for_forces().
+struct BodyInWater {
+  LocalWater water;                 ///< at the origin of the body
+  BodyMotion motion;                ///< half a step after its start for a body that is alone
+  Vector3d v_B = Vector3d::Zero();  ///< velocity of the origin relative to the water, in body axes
+  Vector3d w_B = Vector3d::Zero();  ///< angular velocity of the body, in body axes
+  bool known = false;  ///< false: hydrodynamics do not apply to this body, and the other members are unused
+};
 
 /// Buoyancy and drag of free bodies without hydrodynamic coefficients, part by part.  docs/models/marine.md has the
 /// model.

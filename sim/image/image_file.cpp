@@ -11,8 +11,6 @@
 #include <fstream>
 
 #include "sim/base/whole_file.hpp"
-#include "sim/image/jpeg.hpp"
-#include "sim/image/png.hpp"
 
 namespace sim {
 

@@ -48,4 +48,12 @@ Image8 read_image(const std::string& path);
 /// Returns true when the file extension is one that write_image supports.
 bool is_image_name(const std::string& path);
 
+/// Throws ImageError for an image that is empty or too large.
+void check_image_size(std::uint64_t width, std::uint64_t height);
+/// Decodes a JPEG to RGB.  Throws ImageError.
+Image8 decode_jpeg(std::span<const std::byte> bytes);
+
+/// Decodes a PNG to RGB; transparent pixels are blended with black.  Throws ImageError.
+Image8 decode_png(std::span<const std::byte> bytes);
+
 }  // namespace sim

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/image/jpeg.hpp"
-
 #include <csetjmp>
 #include <cstdio>
 #include <cstdlib>
-// Requires cstdio.
-#include <jpeglib.h>
 
 #include "sim/image/image_file.hpp"
+// Requires cstdio.
+#include <jpeglib.h>
 
 namespace sim {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/image/png.hpp"
-
 #include <png.h>
 #include <spdlog/fmt/fmt.h>
 
@@ -10,7 +8,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "sim/image/jpeg.hpp"
+#include "sim/image/image_file.hpp"
 
 namespace sim {
 

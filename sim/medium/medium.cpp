@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "sim/base/log.hpp"
-#include "sim/medium/stability.hpp"
+#include "sim/medium/water_column.hpp"
 
 namespace sim {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "sim/medium/medium_config.hpp"
@@ -39,5 +40,9 @@ class WaterColumn {
   bool same_density_;
   std::vector<Row> rows_;  ///< at least one; the first is at the surface
 };
+
+/// Depth (m) of the first row of the profile whose water is lighter than that of the row above it.  With an equation of
+/// state, densities are compared at the same pressure, with a margin for well-mixed water.  `column`: of this water.
+std::optional<double> unstable_at_m(const WaterConfig& water, const WaterColumn& column);
 
 }  // namespace sim

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/model/hydrodynamics_checks.hpp"
-
 #include <cmath>
 #include <numbers>
 
-#include "sim/base/linear_algebra.hpp"
+#include "sim/base/math.hpp"
 #include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
+#include "sim/model/hydrodynamics_config.hpp"
 
 namespace sim {
 

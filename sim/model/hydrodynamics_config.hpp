@@ -146,4 +146,19 @@ struct HydrodynamicsConfig {
   void read(ParamReader& in);
 };
 
+/// Returns the diagonal of the added mass of a prolate spheroid about its center, long axis along x: kg, kg, kg, kg
+/// m^2, kg m^2, kg m^2.  It is an approximation for slender hulls without published coefficients.  `half_length_m` must
+/// be at least `radius_m`.  Potential flow about an ellipsoid: Lamb, Hydrodynamics, articles 114 and 115.
+Vector6d spheroid_added_mass(double half_length_m, double radius_m, double density_kgpm3);
+
+/// Reports unphysical values as errors: inertia that is not positive definite, added mass that is asymmetric or
+/// negative, damping that adds energy.  Expects numbers that were read without errors.
+void check_coefficients(const HydrodynamicsConfig& config, ParamReader& in);
+
+/// Returns warnings about an inertia that is possible but most likely wrong.
+std::vector<std::string> doubts_about_inertia(const HydrodynamicsConfig& config);
+
+/// Returns these, and warnings about coefficients that are possible but most likely wrong.
+std::vector<std::string> doubts_about(const HydrodynamicsConfig& config);
+
 }  // namespace sim

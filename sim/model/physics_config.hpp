@@ -11,7 +11,7 @@
 #include "sim/model/joint_type.hpp"
 #include "sim/model/part_shape.hpp"
 #include "sim/scene/material.hpp"
-#include "sim/scene/ray_library.hpp"
+#include "sim/scene/scene.hpp"
 #include "sim/terrain/terrain_config.hpp"
 
 namespace sim {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -119,5 +121,11 @@ JointMotion load_motion(const std::string& path, Diagnostics& diagnostics);
 /// Returns the text of a motion file that reads to this motion.  Values in degrees keep 12 digits; those in rad are
 /// exact.  Its file of frames is written by motion_frames_text().
 std::string motion_text(const JointMotion& motion);
+
+/// Bytes of the longest name of a joint in a motion.
+constexpr std::size_t max_joint_name = 255;
+
+/// Returns what is wrong with the name of a joint in a motion, for an error: the rule and the name; empty: nothing.
+std::string joint_name_error(std::string_view name);
 
 }  // namespace sim

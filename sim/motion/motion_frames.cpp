@@ -10,7 +10,6 @@
 #include "sim/base/whole_file.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/config/utf8.hpp"
-#include "sim/motion/joint_name.hpp"
 #include "sim/motion/motion.hpp"
 
 namespace sim {

@@ -5,8 +5,8 @@
 #include <sstream>
 
 #include "sim/base/number.hpp"
+#include "sim/config/config_node.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/yaml_writer.hpp"
 #include "sim/motion/motion.hpp"
 
 namespace sim {

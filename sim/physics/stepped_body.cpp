@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "sim/physics/stepped_body.hpp"
 
-#include "sim/base/linear_algebra.hpp"
+#include "sim/base/math.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/ode/body_copy.hpp"
 

@@ -8,8 +8,8 @@
 #include <iterator>
 #include <sstream>
 
+#include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/shipped_files.hpp"
 
 namespace sim {
 

@@ -59,8 +59,8 @@ const ConfigNode* value_of(const ProgramDeclaration& declaration, const ConfigNo
   return arg != nullptr && arg->initial ? &*arg->initial : nullptr;
 }
 
-/// Whether a missing argument is there under a misspelt name, which has been reported.
-bool is_misspelt(const ProgramDeclaration& declaration, const ConfigNode& args, const std::string& name) {
+/// Whether a missing argument is there under a misspelled name, which has been reported.
+bool is_misspelled(const ProgramDeclaration& declaration, const ConfigNode& args, const std::string& name) {
   std::size_t unknown = 0;
   for (const ConfigNode::Entry& entry : args.entries) {
     if (declaration.find(entry.key) != nullptr) continue;
@@ -90,7 +90,7 @@ void check_together(const ProgramDeclaration& declaration, const ConfigNode& arg
                     const std::string& who, Diagnostics& diagnostics) {
   for (const ArgDeclaration& arg : declaration.args) {
     const ConfigNode* value = args.find(arg.name);
-    if (arg.required && value == nullptr && !is_misspelt(declaration, args, arg.name))
+    if (arg.required && value == nullptr && !is_misspelled(declaration, args, arg.name))
       diagnostics.error(place, who, "missing argument '" + arg.name + "'");
     if (value == nullptr) continue;
     for (const std::string& needed : arg.needs)

@@ -7,8 +7,8 @@
 #include <set>
 
 #include "sim/config/common_keys.hpp"
+#include "sim/config/config_node.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/yaml_writer.hpp"
 #include "sim/program/program_args.hpp"
 
 namespace sim {

@@ -6,7 +6,6 @@
 #include <memory>
 #include <span>
 
-#include "sim/scene/ray_library.hpp"
 #include "sim/scene/scene.hpp"
 
 struct dxGeom;  // of ODE

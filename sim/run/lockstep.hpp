@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "sim/bus/bus.hpp"
-#include "sim/world_file/on_timeout.hpp"
+#include "sim/world_file/world_config.hpp"
 
 namespace sim {
 

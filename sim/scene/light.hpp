@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "sim/base/math.hpp"
@@ -22,5 +25,11 @@ struct LightConfig {
   /// Returns the unit vector from the ground to the sun.
   Vector3d to_sun_W() const;
 };
+
+/// Red, green and blue, sRGB-encoded as in files.
+using Color = std::array<std::uint8_t, 3>;
+
+/// Parses `#rrggbb`; returns empty for other texts.
+std::optional<Color> parse_color(const std::string& text);
 
 }  // namespace sim

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/config/param_reader.hpp"
-#include "sim/scene/color.hpp"
+#include "sim/scene/light.hpp"
 #include "sim/scene/scene.hpp"
 
 namespace sim {

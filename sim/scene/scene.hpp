@@ -7,6 +7,7 @@
 #include <span>
 
 #include "sim/base/math.hpp"
+#include "sim/config/choice_words.hpp"
 
 namespace sim {
 
@@ -82,5 +83,10 @@ class Scene {
   /// Returns true when a part blocks the line between two points.
   bool occluded(const Vector3d& from_W, const Vector3d& to_W, const RayFilter& filter) const;
 };
+
+/// Library for ray casting.
+enum class RayLibrary { embree, ode };
+
+inline constexpr ChoiceWords<RayLibrary> ray_library_words{{"embree", RayLibrary::embree}, {"ode", RayLibrary::ode}};
 
 }  // namespace sim

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <memory>
 
-#include "sim/bus/arrival_flags.hpp"
 #include "sim/bus/byte_port.hpp"
+#include "sim/bus/message_gate.hpp"
 #include "sim/device/shared_by_devices.hpp"
 #include "sim/event/event_queue.hpp"
 #include "sim/vehicle/step_clock.hpp"

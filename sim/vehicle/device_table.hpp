@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/bus/arrival_flags.hpp"
+#include "sim/bus/message_gate.hpp"
 #include "sim/vehicle/mounted_device.hpp"
 
 namespace sim {

@@ -5,9 +5,7 @@
 #include <utility>
 
 #include "sim/state/state_archive.hpp"
-#include "sim/vehicle/limit_check.hpp"
 #include "sim/vehicle/mounted_device.hpp"
-#include "sim/vehicle/world_error.hpp"
 
 namespace sim {
 

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "sim/config/diagnostics.hpp"
+#include "sim/config/message_text.hpp"
 #include "sim/model/object_config.hpp"
 #include "sim/vehicle/vehicle.hpp"
 
@@ -67,5 +71,26 @@ class Entities {
   std::int64_t next_object_number_ = 0;
   std::uint64_t generation_ = 0;
 };
+
+/// Failure of an operation that the present state of the world does not allow.  what() is one line with who, rule and
+/// value.
+class WorldError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Returns a name in quotes, printable and shortened, for messages.
+inline std::string shown_name(const std::string& name) {
+  return "'" + shortened(printable(name)) + "'";
+}
+
+/// Throws ConfigError when `count` exceeds the limit of the world.
+inline void check_limit(const char* what, std::size_t count, int limit, const SourcePlace& place,
+                        const std::string& who) {
+  if (count > static_cast<std::size_t>(limit))
+    throw_config_error(place, who,
+                       "at most " + std::to_string(limit) + " " + what + " are allowed (limits of the world), got " +
+                           std::to_string(count));
+}
 
 }  // namespace sim

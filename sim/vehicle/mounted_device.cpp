@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sim/bus/utime_stamp.hpp"
+#include "sim/bus/bus.hpp"
 #include "sim/vehicle/device_context.hpp"
 #include "sim/vehicle/run_hash.hpp"
 #include "sim/vehicle/vehicle.hpp"

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "sim/base/cpu_clock.hpp"
+#include "sim/base/time.hpp"
 
 namespace sim {
 

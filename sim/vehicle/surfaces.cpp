@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "sim/physics/physics_world.hpp"
-#include "sim/vehicle/limit_check.hpp"
+#include "sim/vehicle/entities.hpp"
 #include "sim/world_file/world_config.hpp"
 
 namespace sim {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/config/diagnostics.hpp"
-#include "sim/vehicle/world_error.hpp"
+#include "sim/vehicle/entities.hpp"
 #include "sim/world/world_builder.hpp"
 #include "sim/world/world_journal.hpp"
 #include "sim/world/world_parts.hpp"

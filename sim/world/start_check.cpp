@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/start_check.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -13,6 +11,7 @@
 #include "sim/config/warnings.hpp"
 #include "sim/vehicle/vehicle.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world/world_checks.hpp"
 
 namespace sim {
 

@@ -9,7 +9,7 @@
 #include "sim/base/record_hash.hpp"
 #include "sim/base/state_hash.hpp"
 #include "sim/base/thread_pool.hpp"
-#include "sim/device/unhashed_until_used.hpp"
+#include "sim/device/device.hpp"
 #include "sim/world/world_parts.hpp"
 
 namespace sim {

@@ -7,10 +7,8 @@
 
 #include "sim/base/shared_work.hpp"
 #include "sim/base/thread_pool.hpp"
-#include "sim/world/bottom_check.hpp"
-#include "sim/world/plan_check.hpp"
-#include "sim/world/start_check.hpp"
 #include "sim/world/world_builder.hpp"
+#include "sim/world/world_checks.hpp"
 #include "sim/world/world_editor.hpp"
 #include "sim/world/world_journal.hpp"
 #include "sim/world/world_parts.hpp"

@@ -21,7 +21,6 @@
 #include "sim/vehicle/step_clock.hpp"
 #include "sim/vehicle/vehicle.hpp"
 #include "sim/vehicle/world_buses.hpp"
-#include "sim/vehicle/world_error.hpp"
 #include "sim/world_file/world_config.hpp"
 
 namespace sim {

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "sim/config/diagnostics.hpp"
-#include "sim/vehicle/limit_check.hpp"
+#include "sim/vehicle/entities.hpp"
 #include "sim/world/memory_forecast.hpp"
 #include "sim/world/world_parts.hpp"
-#include "sim/world_file/device_change.hpp"
+#include "sim/world_file/check_script.hpp"
 
 namespace sim {
 

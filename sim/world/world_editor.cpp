@@ -7,12 +7,11 @@
 #include <stdexcept>
 
 #include "sim/config/diagnostics.hpp"
-#include "sim/vehicle/limit_check.hpp"
+#include "sim/vehicle/entities.hpp"
 #include "sim/vehicle/mounted_device.hpp"
-#include "sim/world/bottom_check.hpp"
-#include "sim/world/plan_check.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world/world_builder.hpp"
+#include "sim/world/world_checks.hpp"
 #include "sim/world/world_journal.hpp"
 #include "sim/world/world_parts.hpp"
 

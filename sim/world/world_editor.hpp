@@ -9,7 +9,7 @@
 #include "sim/director/stage.hpp"
 #include "sim/director/world_observer.hpp"
 #include "sim/vehicle/end_of_run.hpp"
-#include "sim/vehicle/world_error.hpp"
+#include "sim/vehicle/entities.hpp"
 
 namespace sim {
 

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "sim/device/unhashed_until_used.hpp"
+#include "sim/device/device.hpp"
 
 namespace sim {
 

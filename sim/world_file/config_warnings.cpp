@@ -10,7 +10,7 @@
 #include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/device/device_registry.hpp"
-#include "sim/model/hydrodynamics_checks.hpp"
+#include "sim/model/hydrodynamics_config.hpp"
 
 namespace sim {
 

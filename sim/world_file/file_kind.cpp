@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "sim/config/parsed_files.hpp"
+#include "sim/config/config_node.hpp"
 
 namespace sim {
 

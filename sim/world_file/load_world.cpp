@@ -12,7 +12,6 @@
 #include "sim/bus/bus.hpp"
 #include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/shipped_files.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/device/plugin.hpp"
 #include "sim/world_file/check_script.hpp"

@@ -36,4 +36,10 @@ void read_rules(ParamReader& in, std::vector<RuleExpression>& rules, const std::
 /// Checks metrics after the vehicles were loaded, such as for devices that do not exist.
 void check_metrics(const WorldConfig& world, Diagnostics& diagnostics);
 
+/// Describes `pass:`, a list of rules.
+void describe_rules(ParamReader& in, const char* meaning, std::vector<std::string> examples);
+
+/// Reads the value of `pass:`.
+std::vector<RuleExpression> read_rule_list(const ConfigNode& list, const RuleNames& names, Diagnostics& diagnostics);
+
 }  // namespace sim

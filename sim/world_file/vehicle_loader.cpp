@@ -10,7 +10,6 @@
 
 #include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/shipped_files.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/world_file/data_files.hpp"
 #include "sim/world_file/file_kind.hpp"

@@ -10,8 +10,8 @@
 
 #include "sim/bus/bus.hpp"
 #include "sim/config/common_keys.hpp"
+#include "sim/config/config_node.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/yaml_writer.hpp"
 
 namespace sim {
 

@@ -9,6 +9,7 @@
 
 #include "sim/acoustics/acoustics_config.hpp"
 #include "sim/base/geodesy.hpp"
+#include "sim/config/choice_words.hpp"
 #include "sim/config/file_access.hpp"
 #include "sim/config/param_reader.hpp"
 #include "sim/geometry/zone.hpp"
@@ -20,10 +21,22 @@
 #include "sim/script/actor_config.hpp"
 #include "sim/script/event_config.hpp"
 #include "sim/world_file/metric_config.hpp"
-#include "sim/world_file/on_timeout.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 
 namespace sim {
+
+/// Action when a client of the lockstep does not answer in time.
+enum class OnTimeout {
+  wait,     ///< the world waits forever
+  pause,    ///< the world pauses until the client answers, or until another one resumes the run without it
+  go_on,    ///< the run continues without the client
+  end_run,  ///< the run ends with exit code 5
+};
+
+inline constexpr ChoiceWords<OnTimeout> on_timeout_words{{"wait", OnTimeout::wait},
+                                                         {"pause", OnTimeout::pause},
+                                                         {"continue", OnTimeout::go_on},
+                                                         {"end", OnTimeout::end_run}};
 
 /// Geodetic origin of the world.
 struct OriginConfig {

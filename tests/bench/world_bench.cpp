@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "sim/config/shipped_files.hpp"
+#include "sim/config/file_access.hpp"
 #include "sim/vehicle/stage_times.hpp"
 #include "sim/world/world_editor.hpp"
 #include "sim/world/world_state.hpp"

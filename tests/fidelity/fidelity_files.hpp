@@ -10,13 +10,12 @@
 #include "sim/bus/in_process_bus.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/world/bottom_check.hpp"
 #include "sim/world/world.hpp"
+#include "sim/world/world_checks.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
 #include "verification/fidelity/fidelity.hpp"
-#include "verification/fidelity/fidelity_report.hpp"
 
 namespace fidelity_files {
 

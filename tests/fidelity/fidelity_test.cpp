@@ -13,7 +13,6 @@
 #include "sim/world_file/load_world.hpp"
 #include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"
-#include "verification/fidelity/fidelity_report.hpp"
 
 namespace {
 

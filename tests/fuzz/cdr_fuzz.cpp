@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "all_message_types.hpp"  // made by CMake: every type in messages
-#include "bridges/ros2/cdr_transcoder.hpp"
+#include "bridges/ros2/cdr.hpp"
 #include "bridges/ros2/converter.hpp"
 #include "bridges/ros2/ros2_schema.hpp"
 #include "shoal/message_codec.hpp"

@@ -6,9 +6,9 @@
 #include "bridges/base/bus_error.hpp"
 #include "bridges/lcm/lcm_connection.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
-#include "tools/command_line/arguments.hpp"
 #include "tools/command_line/checks.hpp"
 #include "tools/command_line/declared_options.hpp"
+#include "tools/command_line/parse.hpp"
 
 // Words of command lines: options with their checks, those of a declaration with their lists, LCM URLs.
 

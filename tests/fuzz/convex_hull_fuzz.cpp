@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/fuzz/fuzz_input.hpp"
-#include "tools/shoal/urdf/convex_hull.hpp"
+#include "tools/shoal/urdf/mass_of_shapes.hpp"
 
 // Points on a grid: the hull is closed and convex, or there is none.
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 
-#include "experiment/drive/drive_error.hpp"
-#include "experiment/drive/drive_keys.hpp"
+#include "experiment/drive/drive_profile.hpp"
+#include "experiment/drive/driver.hpp"
 #include "experiment/drive/gamepad.hpp"
 #include "experiment/terminal/key_events.hpp"
 #include "tests/fuzz/fuzz_target.hpp"

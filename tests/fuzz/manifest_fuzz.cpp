@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "experiment/campaign/manifest.hpp"
-#include "experiment/campaign/study_rows.hpp"
+#include "experiment/campaign/verified_runs.hpp"
 #include "experiment/study/run_files.hpp"
 #include "experiment/study/study_until.hpp"
 #include "tests/fuzz/fuzz_input.hpp"

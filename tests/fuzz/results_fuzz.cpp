@@ -2,7 +2,7 @@
 #include "experiment/results/run_record.hpp"
 #include "experiment/snapshot/snapshot_pieces.hpp"
 #include "experiment/study/study_curves.hpp"
-#include "experiment/terminal/key_sequences.hpp"
+#include "experiment/terminal/terminal_parser.hpp"
 #include "shoal/message_schema.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 #include "tests/fuzz/scratch_file.hpp"

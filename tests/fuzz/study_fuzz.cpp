@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiment/study/load_study.hpp"
-#include "experiment/study/study_seeds.hpp"
+#include "experiment/study/study_config.hpp"
 #include "messages/yaml/message_writer.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 #include "tests/fuzz/scratch_file.hpp"

@@ -6,7 +6,6 @@
 #include "bridges/web/view_protocol.hpp"
 #include "bridges/web/web_error.hpp"
 #include "tests/fuzz/fuzz_target.hpp"
-#include "viewer/page_data/look_request.hpp"
 #include "viewer/page_data/message_frame.hpp"
 #include "viewer/page_data/page_request.hpp"
 

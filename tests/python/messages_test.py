@@ -130,7 +130,7 @@ class RecordTest(unittest.TestCase):
         with self.assertRaisesRegex(shoal.Error, "no messages on 'nothing'"):
             shoal.table(path, 'nothing')
 
-    def test_with_a_misspelt_channel_is_told_from_one_without_messages(self):
+    def test_with_a_misspelled_channel_is_told_from_one_without_messages(self):
         path = scratch('own2.lcm')
         with shoal.RecordWriter(path, overwrite=True) as record:
             record.write('rover1.lidar', 1, messages.utime_t())

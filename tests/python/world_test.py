@@ -156,7 +156,7 @@ vehicles:
         with self.assertRaises(TypeError):
             shoal.World(3)
 
-    def test_refuses_misspelt_channels(self):
+    def test_refuses_misspelled_channels(self):
         world = shoal.World('minimal')
         command = shoal.messages.twist_command_t(forward_mps=0.5)
         for use in world.last, world.subscribe:

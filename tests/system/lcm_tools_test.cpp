@@ -160,8 +160,8 @@ TEST(LcmTools, TheViewersScriptSaysWhatIsMissing) {
       without_jars.errors().find("/nowhere/lcm.jar is missing; install it with: sudo apt-get install liblcm-java"),
       std::string::npos)
       << without_jars.errors();
-  Program misspelt({source("tools/lcm-spy"), "--url"});
-  EXPECT_EQ(misspelt.wait(), 2);
+  Program misspelled({source("tools/lcm-spy"), "--url"});
+  EXPECT_EQ(misspelled.wait(), 2);
 }
 
 TEST(LcmTools, TheViewersScriptMakesAClassOfEachType) {

@@ -246,9 +246,9 @@ TEST(Motion, JointsThatAreSetAreThoseOfTheVehicle) {
   const ScratchFolder folder;
   const std::string file = folder.file("wave.yaml");
   write_file(file, text_of_file(source(wave)));
-  const Ended misspelt = motion({"edit", "set", file, "--at", "1", "tial_pan=30"});
-  EXPECT_EQ(misspelt.exit_code, 2);
-  EXPECT_THAT(misspelt.errors,
+  const Ended misspelled = motion({"edit", "set", file, "--at", "1", "tial_pan=30"});
+  EXPECT_EQ(misspelled.exit_code, 2);
+  EXPECT_THAT(misspelled.errors,
               HasSubstr("joint 'tial_pan' is not a servo of vehicle 'ers7'; did you mean 'tail_pan'?"));
   EXPECT_EQ(text_of_file(file), text_of_file(source(wave)));
   // An alias sets the joint that the motion names.

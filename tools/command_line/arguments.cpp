@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/command_line/arguments.hpp"
-
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -8,6 +6,7 @@
 #include "sim/config/message_text.hpp"
 #include "tools/command_line/checks.hpp"
 #include "tools/command_line/help.hpp"
+#include "tools/command_line/parse.hpp"
 
 namespace command_line {
 

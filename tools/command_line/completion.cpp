@@ -5,8 +5,8 @@
 #include <sstream>
 #include <vector>
 
-#include "tools/command_line/arguments.hpp"
 #include "tools/command_line/help.hpp"
+#include "tools/command_line/parse.hpp"
 
 namespace command_line {
 

@@ -5,15 +5,16 @@
 #include <cctype>
 #include <iostream>
 #include <limits>
+#include <vector>
 
+#include "sim/config/config_node.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/yaml_writer.hpp"
+#include "sim/device/plugin.hpp"
 #include "sim/program/program_args.hpp"
 #include "tools/command_line/checks.hpp"
 #include "tools/command_line/parse.hpp"
 
 namespace command_line {
-
 namespace {
 
 using sim::ArgDeclaration;
@@ -234,6 +235,54 @@ std::optional<int> DeclaredOptions::parse(int argc, const char* const* argv) {
     return wrong_usage(app_.get_name(), error.what());
   }
   return std::nullopt;
+}
+
+namespace {
+
+void split_names(const std::string& option, const std::string& text, std::vector<std::string>& names) {
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    if (end == begin) throw CLI::ValidationError(option, "must be names, comma separated, got " + quoted(text));
+    names.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+}
+
+}  // namespace
+
+CLI::Option* add_name_list(CLI::App& command, const std::string& option, std::vector<std::string>& names,
+                           const std::string& meaning) {
+  return command
+      .add_option_function<std::vector<std::string>>(
+          option,
+          [option, &names](const std::vector<std::string>& texts) {
+            names.clear();
+            for (const std::string& text : texts) split_names(option, text, names);
+          },
+          meaning)
+      ->type_name("NAMES")
+      ->type_size(1)
+      ->allow_extra_args(false);
+}
+
+void load_plugin(const std::string& file) {
+  sim::Diagnostics diagnostics;
+  const sim::SourcePlace place{sim::intern_file_name("--plugin " + file), 0, 0};
+  const std::string found = sim::find_plugin(file, "");
+  sim::load_plugin(found.empty() ? file : found, place, "", diagnostics);
+  diagnostics.throw_if_any();
+}
+
+void add_plugin_option(CLI::App& command) {
+  const auto load_all = [](const std::vector<std::string>& files) {
+    for (const std::string& file : files) load_plugin(file);
+  };
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--plugin", load_all, "plugin library with additional devices, metrics, actions or algorithms")
+      ->type_name("FILE")
+      ->type_size(1)
+      ->allow_extra_args(false);
 }
 
 }  // namespace command_line

@@ -90,4 +90,15 @@ class DeclaredOptions {
   bool describe_ = false;
 };
 
+/// Adds an option of names, comma separated; it may be repeated.  An empty name is an error: CLI11 would drop it, and
+/// take an option with empty names only for one that was not given.
+CLI::Option* add_name_list(CLI::App& command, const std::string& option, std::vector<std::string>& names,
+                           const std::string& meaning);
+
+/// Adds `--plugin FILE`; the plugin is loaded before the command runs.
+void add_plugin_option(CLI::App& command);
+
+/// Loads the plugin that `--plugin` names.  Throws sim::ConfigError.
+void load_plugin(const std::string& file);
+
 }  // namespace command_line

@@ -6,8 +6,8 @@
 #include <sstream>
 
 #include "sim/base/text_layout.hpp"
-#include "tools/command_line/arguments.hpp"
 #include "tools/command_line/checks.hpp"
+#include "tools/command_line/parse.hpp"
 
 namespace command_line {
 

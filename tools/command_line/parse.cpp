@@ -9,7 +9,6 @@
 #include <iostream>
 
 #include "sim/base/text_layout.hpp"
-#include "tools/command_line/arguments.hpp"
 #include "tools/command_line/checks.hpp"
 #include "tools/command_line/help.hpp"
 

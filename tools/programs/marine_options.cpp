@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-#include "autonomy/acomms/tdma.hpp"
+#include "autonomy/acomms/channel_access.hpp"
 #include "autonomy/behaviors/formation_behavior.hpp"
 
 namespace autonomy {

@@ -7,8 +7,8 @@
 #include "experiment/world_files/world_by_name.hpp"
 #include "shoal/message_schema.hpp"
 #include "sim/base/text_layout.hpp"
+#include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/shipped_files.hpp"
 #include "sim/device/device_registry.hpp"
 #include "tools/shoal/commands/commands.hpp"
 

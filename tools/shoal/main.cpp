@@ -18,7 +18,7 @@
 #include "experiment/snapshot/run_identity.hpp"
 #include "sim/base/text_layout.hpp"
 #include "sim/config/diagnostics.hpp"
-#include "sim/config/shipped_files.hpp"
+#include "sim/config/file_access.hpp"
 #include "sim/device/device_registry.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 #include "tools/command_line/parse.hpp"

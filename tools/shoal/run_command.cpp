@@ -14,12 +14,10 @@
 #include "messages/yaml/message_writer.hpp"
 #include "sim/base/log.hpp"
 #include "sim/base/number.hpp"
-#include "tools/command_line/name_list.hpp"
-#include "tools/shoal/commands/command_library.hpp"
+#include "tools/command_line/declared_options.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/commands/live_page.hpp"
-#include "tools/shoal/options/speed_option.hpp"
-#include "tools/shoal/options/view_options.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 
 namespace tools {
 

@@ -15,7 +15,6 @@
 #include "sim/acoustics/sound_path.hpp"
 #include "sim/acoustics/transmission_loss.hpp"
 #include "sim/base/number.hpp"
-#include "sim/medium/absorption.hpp"
 #include "sim/medium/sea_water.hpp"
 
 namespace verification {

@@ -10,10 +10,9 @@
 #include <utility>
 
 #include "devices/comms/micromodem_rates.hpp"
-#include "sim/acoustics/echoes.hpp"
-#include "sim/acoustics/fading.hpp"
+#include "sim/acoustics/acoustics_config.hpp"
+#include "sim/acoustics/multipath.hpp"
 #include "sim/acoustics/propagation.hpp"
-#include "sim/acoustics/ray_paths.hpp"
 #include "sim/acoustics/rays/ray_tables.hpp"
 #include "sim/acoustics/sound_path.hpp"
 #include "sim/random/random.hpp"

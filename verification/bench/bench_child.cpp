@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/fmt/fmt.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <cstring>
 #include <stdexcept>
+#include <system_error>
 #include <type_traits>
 #include <vector>
 
+#include "bridges/base/forked_work.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "verification/bench/bench_figures.hpp"
 
@@ -21,42 +22,20 @@ static_assert(std::is_trivially_copyable_v<BenchFigures>);
 // The child answers with one of these and then the figures, or a text.
 constexpr char figures_follow = 'f', wrong_input_follows = 'c', error_follows = 'e';
 
-void write_all(int file, const void* data, std::size_t bytes) {
-  for (const char* at = static_cast<const char*>(data); bytes > 0;) {
-    const ssize_t written = ::write(file, at, bytes);
-    if (written <= 0) return;  // the parent has ended
-    at += written;
-    bytes -= static_cast<std::size_t>(written);
-  }
-}
-
-std::string read_all(int file) {
-  std::string text;
-  char block[4096];
-  for (ssize_t got = 0; (got = ::read(file, block, sizeof block)) > 0;)
-    text.append(block, static_cast<std::size_t>(got));
-  return text;
-}
-
-/// Measures, and writes the answer.
-void answer(int file, const BenchScene& scene, int vehicles, int threads, const BenchOptions& options) {
-  char kind = figures_follow;
-  std::string text;
-  BenchFigures figures;
+/// Measures, and returns the answer.
+std::string answer(const BenchScene& scene, int vehicles, int threads, const BenchOptions& options) {
   try {
-    figures = measure_bench(scene, vehicles, threads, options);
+    const BenchFigures figures = measure_bench(scene, vehicles, threads, options);
+    std::string text(1 + sizeof figures, figures_follow);
+    std::memcpy(text.data() + 1, &figures, sizeof figures);
+    return text;
   } catch (const sim::ConfigError& error) {
-    kind = wrong_input_follows;
+    std::string text(1, wrong_input_follows);
     for (const std::string& line : error.lines()) text += line + '\n';
+    return text;
   } catch (const std::exception& error) {
-    kind = error_follows;
-    text = error.what();
+    return error_follows + std::string(error.what());
   }
-  write_all(file, &kind, 1);
-  if (kind == figures_follow)
-    write_all(file, &figures, sizeof figures);
-  else
-    write_all(file, text.data(), text.size());
 }
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -72,23 +51,19 @@ std::vector<std::string> lines_of(const std::string& text) {
 }  // namespace
 
 BenchFigures measure_bench_apart(const BenchScene& scene, int vehicles, int threads, const BenchOptions& options) {
-  int ends[2];
-  if (::pipe(ends) != 0) throw std::runtime_error(fmt::format("no pipe for a bench scene: {}", std::strerror(errno)));
   std::fflush(nullptr);  // otherwise both processes would write what is buffered
-  const pid_t child = ::fork();
-  if (child < 0) throw std::runtime_error(fmt::format("no process for a bench scene: {}", std::strerror(errno)));
-  if (child == 0) {
-    ::close(ends[0]);
-    answer(ends[1], scene, vehicles, threads, options);
-    std::fflush(nullptr);
-    ::_exit(0);  // without taking the world apart
+  bridges::ForkedWork done;
+  try {
+    done = bridges::run_forked([&](int to) {
+      bridges::write_all(to, answer(scene, vehicles, threads, options));
+      std::fflush(nullptr);
+      return 0;  // without taking the world apart
+    });
+  } catch (const std::system_error& error) {
+    throw std::runtime_error(fmt::format("no process for a bench scene: {}", error.code().message()));
   }
-  ::close(ends[1]);
-  const std::string text = read_all(ends[0]);
-  ::close(ends[0]);
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+  const std::string& text = *done.output;
+  const int status = done.status;
   const std::string who = fmt::format("scene '{}' with {} vehicles", scene.name, vehicles);
   if (WIFSIGNALED(status))
     throw std::runtime_error(fmt::format("{}: its process was ended by signal {}{}", who, WTERMSIG(status),

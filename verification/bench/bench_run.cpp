@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "verification/bench/bench_run.hpp"
 
-#include "sim/config/shipped_files.hpp"
+#include "sim/config/file_access.hpp"
 #include "sim/vehicle/stage_times.hpp"
 #include "sim/world/world_state.hpp"
 

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "verification/bench/bench_scene.hpp"
 
@@ -44,5 +45,19 @@ void set_off_remus(const sim::Vehicle& vehicle, int index, sim::Bus& bus);
 void set_off_otter(const sim::Vehicle& vehicle, int index, sim::Bus& bus);
 /// Gives the autopilot of a vehicle a speed, a heading and a depth by its index.
 void set_off_autopilot(const sim::Vehicle& vehicle, int index, sim::Bus& bus);
+
+/// Sends 32 bytes by the acoustic modem of each vehicle that has one, every 10 s; of N modems number k at k / N of the
+/// period, so that messages overlap at the receivers.
+class Talkers final : public ScenePrograms {
+ public:
+  Talkers(const sim::World& world, sim::Bus& bus);
+  void think(sim::Time now) override;
+
+ private:
+  sim::Bus& bus_;
+  std::vector<std::string> channels_;
+  sim::Bytes payload_;
+  std::int64_t next_ = 0;  ///< number of the next message
+};
 
 }  // namespace verification

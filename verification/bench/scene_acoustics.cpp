@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "verification/bench/talkers.hpp"
+#include "verification/bench/marine_helpers.hpp"
 
 namespace verification {
 

@@ -7,7 +7,6 @@
 
 #include "verification/bench/marine_helpers.hpp"
 #include "verification/bench/rover_arena.hpp"
-#include "verification/bench/talkers.hpp"
 
 namespace verification {
 

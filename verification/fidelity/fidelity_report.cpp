@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "verification/fidelity/fidelity_report.hpp"
-
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
@@ -12,6 +10,7 @@
 #include "experiment/files/csv.hpp"
 #include "experiment/files/gnuplot.hpp"
 #include "experiment/files/scratch_directory.hpp"
+#include "verification/fidelity/fidelity.hpp"
 
 namespace verification {
 

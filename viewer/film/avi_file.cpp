@@ -3,13 +3,11 @@
 
 #include <fcntl.h>
 #include <spdlog/fmt/fmt.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 
-#include "experiment/files/no_links.hpp"
 #include "sim/image/image_file.hpp"
 
 namespace viewer {
@@ -39,31 +37,19 @@ std::string chunk(const std::string& name, const std::string& content) {
 }  // namespace
 
 AviFile::AviFile(std::string file, const FilmFormat& format)
-    : file_(std::move(file)), part_(file_ + ".part"), format_(format) {
-  const bridges::FileDescriptor part = experiment::make_part_file<FilmError>(file_, part_);
-  out_ = fdopen(fcntl(part.number(), F_DUPFD_CLOEXEC, 0), "wb");
-  if (out_ == nullptr) throw FilmError(file_ + ": cannot be written: " + std::strerror(errno));
-  try {
-    write(header());
-  } catch (const FilmError&) {
-    std::fclose(out_);
-    unlink(part_.c_str());
-    throw;
-  }
-}
-
-AviFile::~AviFile() {
-  if (out_ == nullptr) return;
-  std::fclose(out_);
-  unlink(part_.c_str());
+    : file_(std::move(file)),
+      format_(format),
+      out_(fdopen(fcntl(file_.number(), F_DUPFD_CLOEXEC, 0), "wb"), std::fclose) {
+  if (!out_) fail();
+  write(header());
 }
 
 void AviFile::fail() const {
-  throw FilmError(file_ + ": cannot be written: " + std::strerror(errno));
+  throw FilmError(file_.path() + ": cannot be written: " + std::strerror(errno));
 }
 
 void AviFile::write(const std::string& bytes) {
-  if (std::fwrite(bytes.data(), 1, bytes.size(), out_) != bytes.size()) fail();
+  if (std::fwrite(bytes.data(), 1, bytes.size(), out_.get()) != bytes.size()) fail();
 }
 
 std::string AviFile::header() const {
@@ -92,7 +78,7 @@ void AviFile::add(const sim::Image8& frame) {
   // Sizes in RIFF have 32 bits. The index, 16 bytes per frame, is still to come.
   if (data_bytes_ + bytes + 16 * entries_.size() > max_bytes)
     throw FilmError(fmt::format("{}: larger than {} bytes, which an .avi may have; write an .mp4, or a shorter film",
-                                file_, max_bytes));
+                                file_.path(), max_bytes));
   entries_.push_back({static_cast<std::uint32_t>(4 + data_bytes_), bytes});
   max_frame_bytes_ = std::max(max_frame_bytes_, bytes);
   std::string data = "00dc" + u32(bytes);
@@ -109,12 +95,11 @@ void AviFile::finish() {
   std::string index;
   for (const Entry& entry : entries_) index += "00dc" + u32(key_frame) + u32(entry.offset) + u32(entry.bytes);
   write(chunk("idx1", index));
-  if (std::fseek(out_, 0, SEEK_SET) != 0) fail();
+  if (std::fseek(out_.get(), 0, SEEK_SET) != 0) fail();
   write(header());
-  if (std::fflush(out_) != 0) fail();
-  if (std::rename(part_.c_str(), file_.c_str()) != 0) fail();
-  std::fclose(out_);
-  out_ = nullptr;
+  if (std::fflush(out_.get()) != 0) fail();
+  file_.finish();
+  out_.reset();
 }
 
 }  // namespace viewer

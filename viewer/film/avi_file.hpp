@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "experiment/files/part_file.hpp"
+#include "sim/bus/bus.hpp"
 #include "viewer/film/film_writer.hpp"
 
 namespace viewer {
@@ -15,7 +17,6 @@ namespace viewer {
 class AviFile final : public FilmWriter {
  public:
   AviFile(std::string file, const FilmFormat& format);
-  ~AviFile() override;
 
   void add(const sim::Image8& frame) override;
   void finish() override;
@@ -30,9 +31,9 @@ class AviFile final : public FilmWriter {
   void write(const std::string& bytes);
   [[noreturn]] void fail() const;
 
-  std::string file_, part_;
+  experiment::PartFile<FilmError> file_;
   FilmFormat format_;
-  std::FILE* out_ = nullptr;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> out_;
   std::vector<Entry> entries_;
   std::uint64_t data_bytes_ = 0;  // of all frames with their heads
   std::uint32_t max_frame_bytes_ = 0;

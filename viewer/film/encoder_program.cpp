@@ -8,14 +8,11 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 #include <utility>
 
-#include "experiment/files/no_links.hpp"
-#include "experiment/process/child_program.hpp"
+#include "bridges/base/child_program.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace viewer {
@@ -49,38 +46,27 @@ std::vector<std::string> arguments_of(const FilmFormat& format, const std::vecto
 }  // namespace
 
 bool has_ffmpeg() {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path != nullptr ? path : "/usr/local/bin:/usr/bin:/bin");
-  std::string folder;
-  while (std::getline(folders, folder, ':'))
-    if (access((folder.empty() ? "ffmpeg" : folder + "/ffmpeg").c_str(), X_OK) == 0) return true;
-  return false;
+  return bridges::is_program("ffmpeg");
 }
 
 EncoderProgram::EncoderProgram(std::string file, const FilmFormat& format, const std::vector<std::string>& codec)
-    : file_(std::move(file)), part_(file_ + ".part"), log_(file_ + ".log") {
-  for (const std::string* path : {&part_, &log_}) experiment::make_part_file<FilmError>(file_, *path);
+    : file_(std::move(file)), log_(file_.path(), ".log") {
   int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw FilmError(file_ + ": no pipe to ffmpeg: " + std::strerror(errno));
+  if (pipe2(ends, O_CLOEXEC) != 0) throw FilmError(file_.path() + ": no pipe to ffmpeg: " + std::strerror(errno));
   const bridges::FileDescriptor read_end(ends[0]);
   input_ = bridges::FileDescriptor(ends[1]);
   fcntl(ends[1], F_SETPIPE_SZ, 1 << 20);  // fewer switches between the programs
-  experiment::ChildProgram program{"ffmpeg", arguments_of(format, codec, part_), experiment::own_environment(), log_,
-                                   read_end.number()};
-  const int error = experiment::start_child(program, pid_);
-  if (error == 0) return;
-  unlink(part_.c_str());
-  unlink(log_.c_str());
-  throw FilmError(file_ + ": ffmpeg cannot be started: " + std::strerror(error));
+  bridges::ChildProgram program{"ffmpeg", arguments_of(format, codec, file_.part_name()), bridges::own_environment(),
+                                log_.part_name(), read_end.number()};
+  const int error = bridges::start_child(program, pid_);
+  if (error != 0) throw FilmError(file_.path() + ": ffmpeg cannot be started: " + std::strerror(error));
 }
 
 EncoderProgram::~EncoderProgram() {
   if (pid_ > 0) {
     kill(pid_, SIGKILL);
     wait();
-    unlink(part_.c_str());
   }
-  unlink(log_.c_str());
 }
 
 int EncoderProgram::wait() {
@@ -92,7 +78,7 @@ int EncoderProgram::wait() {
 }
 
 std::string EncoderProgram::last_words() const {
-  std::ifstream log(log_);
+  std::ifstream log(log_.part_name());
   std::string line, last;
   while (std::getline(log, line))
     if (!line.empty()) last = line;
@@ -100,11 +86,10 @@ std::string EncoderProgram::last_words() const {
 }
 
 void EncoderProgram::fail(int status) {
-  unlink(part_.c_str());
   const std::string words = last_words();
   const std::string how = WIFSIGNALED(status) ? fmt::format("was ended by signal {}", WTERMSIG(status))
                                               : fmt::format("ended with exit code {}", WEXITSTATUS(status));
-  throw FilmError(fmt::format("{}: ffmpeg {}{}", file_, how, words.empty() ? "" : ": " + words));
+  throw FilmError(fmt::format("{}: ffmpeg {}{}", file_.path(), how, words.empty() ? "" : ": " + words));
 }
 
 void EncoderProgram::add(const sim::Image8& frame) {
@@ -127,10 +112,7 @@ void EncoderProgram::finish() {
   input_ = bridges::FileDescriptor();  // the end of its input
   const int status = wait();
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fail(status);
-  if (std::rename(part_.c_str(), file_.c_str()) == 0) return;
-  const std::string reason = std::strerror(errno);
-  unlink(part_.c_str());
-  throw FilmError(file_ + ": cannot be written: " + reason);
+  file_.finish();
 }
 
 }  // namespace viewer

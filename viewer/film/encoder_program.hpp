@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bridges/base/file_descriptor.hpp"
+#include "experiment/files/part_file.hpp"
 #include "viewer/film/film_writer.hpp"
 
 namespace viewer {
@@ -29,7 +30,7 @@ class EncoderProgram final : public FilmWriter {
   [[noreturn]] void fail(int status);
   std::string last_words() const;
 
-  std::string file_, part_, log_;
+  experiment::PartFile<FilmError> file_, log_;  // the log is never finished
   pid_t pid_ = -1;
   bridges::FileDescriptor input_;
 };

@@ -15,7 +15,7 @@
 #include "viewer/film/background_writer.hpp"
 #include "viewer/film/camera_rig.hpp"
 #include "viewer/film/film_source.hpp"
-#include "viewer/film/ping_observer.hpp"
+#include "viewer/film/overlay.hpp"
 #include "viewer/film/scene_painter.hpp"
 
 namespace viewer {

@@ -20,7 +20,7 @@
 #include "shoal/sim_state_t.hpp"
 #include "viewer/film/camera_rig.hpp"
 #include "viewer/film/film_source.hpp"
-#include "viewer/film/ping_observer.hpp"
+#include "viewer/film/overlay.hpp"
 
 namespace viewer {
 

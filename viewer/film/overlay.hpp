@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/director/world_observer.hpp"
 #include "sim/world/world.hpp"
 #include "viewer/estimates/log_estimates.hpp"
 #include "viewer/estimates/log_paths.hpp"
@@ -92,6 +93,26 @@ class Overlay {
   std::deque<FilmPing> pings_;
   LaserScans scans_;
   std::unique_ptr<ShapeEdges> edges_;
+};
+
+/// Observer that gives the sounds of a world to an overlay.
+class PingObserver final : public sim::WorldObserver {
+ public:
+  /// Observes while it exists.  Both must outlive it.
+  PingObserver(sim::World& world, Overlay& overlay) : world_(world), overlay_(overlay) { world_.set_observer(this); }
+  ~PingObserver() override { world_.set_observer(nullptr); }
+  PingObserver(const PingObserver&) = delete;
+  PingObserver& operator=(const PingObserver&) = delete;
+
+  void sound_sent(const sim::SoundSent& sent) override {
+    overlay_.add({sent.p_W, sim::to_seconds(sent.sent), sim::to_seconds(sent.signal.duration), sent.sound_speed_mps});
+  }
+  void sound_arrived(const sim::SoundArrived&) override {}
+  void happened(const sim::Occurrence&) override {}
+
+ private:
+  sim::World& world_;
+  Overlay& overlay_;
 };
 
 }  // namespace viewer

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "sim/geometry/mesh.hpp"
-#include "sim/scene/color.hpp"
+#include "sim/scene/light.hpp"
 #include "sim/world/part_collisions.hpp"
 
 namespace viewer {

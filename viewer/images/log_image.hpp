@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "shoal/image_t.hpp"
+#include "sim/bus/bus.hpp"
+#include "sim/image/image.hpp"
 
 namespace viewer {
 
@@ -30,5 +35,17 @@ struct LogImage {
 /// log contains; without it, from the first event.  Throws std::runtime_error with the reason.
 LogImage draw_log(const std::string& log, const std::string& channel, const std::string& png,
                   const ImageChoice& choice);
+
+/// Converts the image of a camera message to a displayable one.  Throws std::runtime_error when its size, format and
+/// data are inconsistent; sim::ImageError when compressed data is damaged.
+sim::Image8 displayable(const shoal::image_t& message);
+
+/// Returns true for types of which all messages are drawn in one plot, side_scan_t and multibeam_t; false for types of
+/// which each message is one image.
+bool are_all_drawn(std::int64_t fingerprint);
+
+/// Plots a recording of a range sensor with gnuplot, as a PNG file: all payloads where are_all_drawn(), else the first.
+/// All are of one type.  Throws std::runtime_error with the reason.
+void draw_ranging(const std::vector<sim::Bytes>& payloads, const std::string& title, const std::string& png);
 
 }  // namespace viewer

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "viewer/images/ranging_plot.hpp"
-
 #include <spdlog/fmt/fmt.h>
 #include <stdlib.h>
 
@@ -19,6 +17,7 @@
 #include "shoal/point_cloud_t.hpp"
 #include "shoal/side_scan_t.hpp"
 #include "shoal/sonar_image_t.hpp"
+#include "viewer/images/log_image.hpp"
 
 namespace viewer {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "viewer/page_data/view_json.hpp"
+#include "bridges/base/json_text.hpp"
 
 namespace viewer {
 

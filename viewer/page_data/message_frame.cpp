@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "bridges/base/json_text.hpp"
 #include "shoal/wire_value.hpp"
 
 namespace viewer {
@@ -148,7 +149,7 @@ std::string message_frame(const shoal::MessageTypes& types, std::string_view cha
   }
 
   // Head, header, blob
-  std::string text = header.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string text = bridges::json_text(header);
   pad(text, ' ');
   std::string frame(head_bytes, '\0');
   frame[0] = static_cast<char>(message_kind);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -47,5 +48,14 @@ std::vector<Subscription> parse_subscribe(std::string_view text);
 SeriesRequest parse_series(std::string_view text);
 /// Returns the key `id` of a request as JSON: a number, or a text of at most 64 bytes; else `null`.
 std::string request_id(std::string_view text);
+
+/// Request `look` of a page: the poses at a time.
+struct LookRequest {
+  std::optional<std::int64_t> time_us;  ///< unset: the page shows the present again
+  std::optional<std::int32_t> branch;   ///< unset: the present one
+};
+
+/// Reads a request.  Throws std::runtime_error with the key, the rule and the value.
+LookRequest parse_look(std::string_view text);
 
 }  // namespace viewer

@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <utility>
 
+#include "bridges/base/json_text.hpp"
 #include "bridges/log/event_log.hpp"
 #include "viewer/log/log_index.hpp"
 #include "viewer/log/message_times.hpp"
-#include "viewer/page_data/view_json.hpp"
 #include "viewer/server/view_messages.hpp"
 
 namespace viewer {
@@ -51,21 +51,21 @@ Recording::Recording(const std::string& log, const std::string& version, const L
   end_us_ = index.end_us();
   epoch_us_ = index.epoch_us();
   now_us_ = start_us_;
-  add(Kind::text, json_text({{"op", "hello"},
-                             {"version", 1},
-                             {"shoal", version},
-                             {"source", "log"},
-                             {"control", true},
-                             {"name", std::filesystem::path(log).filename().string()},
-                             {"world", world_},
-                             {"epoch_us", epoch_us_},
-                             {"start_us", start_us_},
-                             {"end_us", end_us_}}));
+  add(Kind::text, bridges::json_text({{"op", "hello"},
+                                      {"version", 1},
+                                      {"shoal", version},
+                                      {"source", "log"},
+                                      {"control", true},
+                                      {"name", std::filesystem::path(log).filename().string()},
+                                      {"world", world_},
+                                      {"epoch_us", epoch_us_},
+                                      {"start_us", start_us_},
+                                      {"end_us", end_us_}}));
   // The events of the whole log, for the time line.
   Json items = Json::array();
   for (const LogIndex::Occasion& each : index.occasions())
     items.push_back({{"time_us", each.time_us}, {"kind", each.kind}, {"who", each.who}, {"text", each.text}});
-  if (!items.empty()) add(Kind::text, json_text({{"op", "events"}, {"items", std::move(items)}}));
+  if (!items.empty()) add(Kind::text, bridges::json_text({{"op", "events"}, {"items", std::move(items)}}));
   read(log, progress);
   std::stable_sort(entries_.begin(), entries_.end(),
                    [](const Entry& a, const Entry& b) { return a.time_us < b.time_us; });

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "bridges/base/json_text.hpp"
 #include "experiment/files/html.hpp"
-#include "viewer/page_data/view_json.hpp"
 
 namespace viewer {
 
@@ -60,7 +60,7 @@ std::string modules_of(std::span<const bridges::EmbeddedFile> page) {
   for (const bridges::EmbeddedFile& file : page)
     if (std::string_view(file.path).ends_with(".js") && file.path != loader_name)
       modules[file.path] = std::string(bytes_of(file));
-  return json_text(modules);
+  return bridges::json_text(modules);
 }
 
 std::string data_element(std::string_view id, std::string_view packed) {

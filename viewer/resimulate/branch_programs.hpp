@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bridges/control/time_machine.hpp"
+#include "bridges/control/sim_service.hpp"
 #include "experiment/replay/replayed_world.hpp"
 #include "experiment/run/run_programs.hpp"
 

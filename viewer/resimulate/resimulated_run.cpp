@@ -9,7 +9,7 @@
 
 #include "experiment/results/run_error.hpp"
 #include "experiment/run/scores_message.hpp"
-#include "experiment/score/saved_scores.hpp"
+#include "experiment/score/scoring.hpp"
 #include "sim/base/log.hpp"
 #include "sim/config/message_text.hpp"
 

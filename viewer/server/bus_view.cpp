@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "bridges/base/json_text.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
-#include "viewer/page_data/view_json.hpp"
 
 namespace viewer {
 
@@ -20,7 +20,7 @@ BusView::BusView(const experiment::ViewOptions& options, const std::string& vers
 void BusView::send_hello() {
   Json hello = hello_json(version_, "bus", world_.empty() ? bus_ : world_, session_.messages.epoch_us());
   hello["name"] = bus_;
-  session_.server.retain("hello", json_text(hello));
+  session_.server.retain("hello", bridges::json_text(hello));
 }
 
 void BusView::message(std::string_view channel, std::span<const std::byte> payload) {
@@ -67,15 +67,16 @@ void BusView::send_status() {
   const bool known = wall_s < max_wall_s && simulated_s >= 0;
   status_at_ = now;
   status_us_ = session_.messages.newest_us();
-  session_.server.retain("status", json_text({{"op", "status"},
-                                              {"time_us", session_.messages.newest_us()},
-                                              {"step", nullptr},
-                                              {"branch", session_.messages.branch()},
-                                              {"paused", known && simulated_s == 0},
-                                              {"speed", nullptr},
-                                              {"rate", known ? simulated_s / wall_s : 0},
-                                              {"waits_for", session_.messages.has_scene() ? "" : "waits for sim.scene"},
-                                              {"ended", nullptr}}));
+  session_.server.retain("status",
+                         bridges::json_text({{"op", "status"},
+                                             {"time_us", session_.messages.newest_us()},
+                                             {"step", nullptr},
+                                             {"branch", session_.messages.branch()},
+                                             {"paused", known && simulated_s == 0},
+                                             {"speed", nullptr},
+                                             {"rate", known ? simulated_s / wall_s : 0},
+                                             {"waits_for", session_.messages.has_scene() ? "" : "waits for sim.scene"},
+                                             {"ended", nullptr}}));
 }
 
 }  // namespace viewer

@@ -6,9 +6,9 @@
 #include <limits>
 #include <optional>
 
+#include "bridges/base/json_text.hpp"
 #include "shoal/message_schema.hpp"
 #include "viewer/log/message_times.hpp"
-#include "viewer/page_data/view_json.hpp"
 #include "viewer/server/page_traffic.hpp"
 
 namespace viewer {
@@ -190,10 +190,10 @@ void LogSeries::answer(const Job& job) {
     const Series series = read_series(log_, index_, job.series, job.deadline);
     Json values = Json::array();
     for (const double value : series.values) values.push_back(std::isfinite(value) ? Json(value) : Json(nullptr));
-    server_.reply(job.request.client, json_text({{"op", "series"},
-                                                 {"id", Json::parse(job.series.id)},
-                                                 {"t_us", series.t_us},
-                                                 {"values", std::move(values)}}));
+    server_.reply(job.request.client, bridges::json_text({{"op", "series"},
+                                                          {"id", Json::parse(job.series.id)},
+                                                          {"t_us", series.t_us},
+                                                          {"values", std::move(values)}}));
   } catch (const std::exception& error) {  // of the request, or the file cannot be read any more
     refuse(server_, job.request, error.what());
   }

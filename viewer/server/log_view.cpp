@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <limits>
 
+#include "bridges/base/json_text.hpp"
 #include "viewer/log/scene_names.hpp"
-#include "viewer/page_data/look_request.hpp"
-#include "viewer/page_data/view_json.hpp"
+#include "viewer/page_data/page_request.hpp"
 
 namespace viewer {
 
@@ -38,7 +38,7 @@ LogView::LogView(const std::string& path, const LogIndex& index, const experimen
   hello["name"] = name_;
   hello["start_us"] = index.start_us();
   hello["end_us"] = index.end_us();
-  session_.server.retain("hello", json_text(hello));
+  session_.server.retain("hello", bridges::json_text(hello));
   using bridges::foxglove::Control;
   session_.foxglove.introduce(hello["name"], version, options.foxglove_control ? Control::playback : Control::none,
                               index.epoch_us() + index.start_us(), index.epoch_us() + index.end_us());
@@ -49,7 +49,8 @@ LogView::LogView(const std::string& path, const LogIndex& index, const experimen
   for (const LogIndex::Occasion& each : index.occasions())
     items.push_back({{"time_us", each.time_us}, {"kind", each.kind}, {"who", each.who}, {"text", each.text}});
   if (!items.empty())
-    session_.server.retain("events", json_text({{"op", "events"}, {"all", true}, {"items", std::move(items)}}));
+    session_.server.retain("events",
+                           bridges::json_text({{"op", "events"}, {"all", true}, {"items", std::move(items)}}));
 }
 
 void LogView::compare_with(const std::string& path, const LogIndex& index,
@@ -71,7 +72,7 @@ void LogView::compare_with(const std::string& path, const LogIndex& index,
   }
   session_.server.retain(
       "branches",
-      json_text(
+      bridges::json_text(
           {{"op", "branches"}, {"present", 0}, {"by", difference ? difference->by : ""}, {"items", std::move(items)}}));
 }
 
@@ -237,15 +238,15 @@ void LogView::send_status() {
   since_status_s_ = 0;
   const bool at_end = now_us_ >= static_cast<double>(index_.end_us());
   // A log that is at its end stands still, whatever was chosen.
-  session_.server.retain("status", json_text({{"op", "status"},
-                                              {"time_us", static_cast<std::int64_t>(now_us_)},
-                                              {"step", nullptr},
-                                              {"branch", 0},
-                                              {"paused", paused_ || at_end},
-                                              {"speed", speed_},
-                                              {"rate", paused_ || at_end ? 0 : speed_},
-                                              {"waits_for", ""},
-                                              {"ended", nullptr}}));
+  session_.server.retain("status", bridges::json_text({{"op", "status"},
+                                                       {"time_us", static_cast<std::int64_t>(now_us_)},
+                                                       {"step", nullptr},
+                                                       {"branch", 0},
+                                                       {"paused", paused_ || at_end},
+                                                       {"speed", speed_},
+                                                       {"rate", paused_ || at_end ? 0 : speed_},
+                                                       {"waits_for", ""},
+                                                       {"ended", nullptr}}));
 }
 
 void LogView::handle(const bridges::ViewRequest& request) {
@@ -275,10 +276,11 @@ void LogView::handle(const bridges::ViewRequest& request) {
       refuse(session_.server, request, "this is a log, which cannot be controlled");
     }
   } catch (const Json::exception&) {
-    session_.server.reply(request.client,
-                          json_text({{"op", "error"}, {"text", "'" + request.op + "' has a value of a wrong kind"}}));
+    session_.server.reply(
+        request.client,
+        bridges::json_text({{"op", "error"}, {"text", "'" + request.op + "' has a value of a wrong kind"}}));
   } catch (const std::runtime_error& error) {
-    session_.server.reply(request.client, json_text({{"op", "error"}, {"text", error.what()}}));
+    session_.server.reply(request.client, bridges::json_text({{"op", "error"}, {"text", error.what()}}));
   }
 }
 

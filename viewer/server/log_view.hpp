@@ -6,7 +6,6 @@
 
 #include "bridges/log/event_log.hpp"
 #include "viewer/estimates/log_estimates.hpp"
-#include "viewer/log/log_difference.hpp"
 #include "viewer/log/log_distances.hpp"
 #include "viewer/log/log_index.hpp"
 #include "viewer/log/log_poses.hpp"
@@ -16,7 +15,9 @@
 
 namespace viewer {
 
-/// Live page of a log: plays it at any speed, and shows any time of it.
+/// Live page of a log: plays it at any speed, and shows any time of it.  Its time is its own, not an
+/// experiment::WorldTime, which paces, saves and takes back the steps of a sim::World: a log has neither, its time is
+/// continuous, flows only while a client watches, and is set to any instant without simulating.
 class LogView {
  public:
   /// `index` is that of the file `path`.  Both must outlive this.  Throws bridges::WebError, BusError.

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "experiment/drive/drive_profile.hpp"
 #include "experiment/drive/driver.hpp"
 #include "experiment/run/run_page.hpp"
 #include "sim/world/world.hpp"
@@ -48,5 +49,10 @@ class PageDrive {
   experiment::DriveProfile profile_;
   std::map<std::string, Seat, std::less<>> seats_;  // by vehicle
 };
+
+/// Returns the text `forms` for a page (docs/develop/view_protocol.md): the actions of `shoal control do` with their
+/// keys, the faults that each type of device takes, the events, objects and actors of the world, and how its vehicles
+/// can be driven.
+std::string forms_text(const sim::World& world, const experiment::DriveProfile& profile);
 
 }  // namespace viewer

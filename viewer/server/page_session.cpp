@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer/server/page_session.hpp"
 
-#include "viewer/page_data/view_json.hpp"
+#include "bridges/base/json_text.hpp"
 
 namespace viewer {
 

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "bridges/base/json_text.hpp"
 #include "shoal/message_schema.hpp"
 #include "viewer/page_data/page_request.hpp"
-#include "viewer/page_data/view_json.hpp"
 
 namespace viewer {
 
@@ -37,9 +37,9 @@ std::map<std::string, std::string, std::less<>> vehicles_of(const std::string& s
 }  // namespace
 
 void refuse(bridges::WebServer& server, const bridges::ViewRequest& request, const std::string& text) {
-  server.reply(
-      request.client,
-      json_text({{"op", "reply"}, {"id", Json::parse(request_id(request.text))}, {"ok", false}, {"text", text}}));
+  server.reply(request.client,
+               bridges::json_text(
+                   {{"op", "reply"}, {"id", Json::parse(request_id(request.text))}, {"ok", false}, {"text", text}}));
 }
 
 void PageTraffic::count(std::string_view channel, std::span<const std::byte> payload) {
@@ -78,7 +78,7 @@ bool PageTraffic::handle(const bridges::ViewRequest& request) {
     try {
       feed_.subscribe(request.client, parse_subscribe(request.text));
     } catch (const PageRequestError& error) {
-      server_.reply(request.client, json_text({{"op", "error"}, {"text", error.what()}}));
+      server_.reply(request.client, bridges::json_text({{"op", "error"}, {"text", error.what()}}));
     }
   } else if (request.op == "series") {
     refuse(server_, request, "series: only a log has the values of the past");
@@ -136,7 +136,8 @@ void PageTraffic::send_counts(std::int64_t time_us) {
                      {"count", channel.count},
                      {"bytes", channel.bytes}});
   }
-  server_.retain("channels", json_text({{"op", "channels"}, {"time_us", time_us}, {"items", std::move(items)}}));
+  server_.retain("channels",
+                 bridges::json_text({{"op", "channels"}, {"time_us", time_us}, {"items", std::move(items)}}));
 }
 
 void PageTraffic::send_links(std::int64_t time_us) {
@@ -151,7 +152,7 @@ void PageTraffic::send_links(std::int64_t time_us) {
                      {"received", pair.received},
                      {"lost", std::move(lost)}});
   }
-  server_.retain("links", json_text({{"op", "links"}, {"time_us", time_us}, {"items", std::move(items)}}));
+  server_.retain("links", bridges::json_text({{"op", "links"}, {"time_us", time_us}, {"items", std::move(items)}}));
 }
 
 void PageTraffic::send_modems(std::int64_t time_us) {
@@ -159,7 +160,7 @@ void PageTraffic::send_modems(std::int64_t time_us) {
   for (const auto& [name, sender] : counts_.senders())
     items.push_back(
         {{"name", name}, {"count", sender.count}, {"bytes", sender.bytes}, {"sending_us", sender.sending_us}});
-  server_.retain("modems", json_text({{"op", "modems"}, {"time_us", time_us}, {"items", std::move(items)}}));
+  server_.retain("modems", bridges::json_text({{"op", "modems"}, {"time_us", time_us}, {"items", std::move(items)}}));
 }
 
 }  // namespace viewer

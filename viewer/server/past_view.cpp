@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "viewer/page_data/view_json.hpp"
+#include "bridges/base/json_text.hpp"
 
 namespace viewer {
 
@@ -66,7 +66,7 @@ void PastView::answer(const bridges::ViewRequest& request) {
     names_.arrange(state->revision, state->bodies, sent_);
     server_.send_state_to(request.client, sent_.end());
   } catch (const std::runtime_error& error) {
-    server_.reply(request.client, json_text({{"op", "error"}, {"text", error.what()}}));
+    server_.reply(request.client, bridges::json_text({{"op", "error"}, {"text", error.what()}}));
   }
 }
 
@@ -98,7 +98,8 @@ std::string PastView::branches_text() const {
     if (const auto programs = programs_.find(branch.number); programs != programs_.end())
       items.back()["programs"] = programs->second;
   }
-  return json_text({{"op", "branches"}, {"present", history_.present()}, {"by", "poses"}, {"items", std::move(items)}});
+  return bridges::json_text(
+      {{"op", "branches"}, {"present", history_.present()}, {"by", "poses"}, {"items", std::move(items)}});
 }
 
 void PastView::update(Clock::time_point now) {

@@ -13,7 +13,7 @@
 #include "sim/world/world.hpp"
 #include "viewer/log/scene_names.hpp"
 #include "viewer/log/state_frame.hpp"
-#include "viewer/page_data/look_request.hpp"
+#include "viewer/page_data/page_request.hpp"
 #include "viewer/server/pose_history.hpp"
 
 namespace viewer {

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "experiment/drive/drive_error.hpp"
+#include "bridges/base/json_text.hpp"
+#include "experiment/drive/drive_profile.hpp"
 #include "experiment/run/version.hpp"
 #include "shoal/message_codec.hpp"
-#include "viewer/page_data/view_json.hpp"
-#include "viewer/server/forms_text.hpp"
+#include "viewer/server/page_drive.hpp"
 
 namespace viewer {
 
@@ -46,7 +46,7 @@ void RunView::start(const sim::World& world, std::optional<double> duration_s, c
   if (source.may_launch) hello["may_launch"] = true;
   if (source.record == "recorded") past_.set_programs(source.programs);
   // Retained, so that pages which connect later get it first.
-  session_.server.retain("hello", json_text(hello));
+  session_.server.retain("hello", bridges::json_text(hello));
   using bridges::foxglove::Control;
   session_.foxglove.introduce(world.config().name, version_, foxglove_control_ ? Control::run : Control::none);
 }
@@ -62,7 +62,7 @@ void RunView::message(std::string_view channel, std::span<const std::byte> paylo
 }
 
 void RunView::problem(const std::string& text) {
-  session_.server.send_text(json_text({{"op", "error"}, {"text", text}}));
+  session_.server.send_text(bridges::json_text({{"op", "error"}, {"text", text}}));
 }
 
 void RunView::moved(const sim::World& world, const sim::RunControl& control, bool continues,
@@ -125,7 +125,7 @@ void RunView::send_status(const sim::World& world, const sim::RunControl& contro
               {"waits_for", waits_for},
               {"ended", ended.empty() ? Json(nullptr) : Json(ended)}};
   if (!log.empty()) status["log"] = log;
-  session_.server.retain("status", json_text(status));
+  session_.server.retain("status", bridges::json_text(status));
 }
 
 void RunView::handle(const bridges::ViewRequest& request, const Execute& execute) {
@@ -142,7 +142,7 @@ void RunView::handle(const bridges::ViewRequest& request, const Execute& execute
     reply["ok"] = false;
     reply["text"] = "'command' and 'text' must be texts, and 'value' a number";
   }
-  session_.server.reply(request.client, json_text(reply));
+  session_.server.reply(request.client, bridges::json_text(reply));
 }
 
 void RunView::drive(const bridges::ViewRequest& request, const sim::World& world) {

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "bridges/base/json_text.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_asset_t.hpp"
 #include "shoal/sim_bodies_t.hpp"
@@ -14,7 +15,6 @@
 #include "shoal/sim_scores_t.hpp"
 #include "shoal/sim_sound_arrival_t.hpp"
 #include "shoal/sim_sound_t.hpp"
-#include "viewer/page_data/view_json.hpp"
 
 namespace viewer {
 
@@ -46,18 +46,18 @@ std::string estimate_text(const std::string& vehicle, const VehicleEstimate& est
       for (int column = 0; column < 3; ++column)
         covariance.push_back(number_or_null((*estimate.covariance_m2)(row, column)));
   }
-  return json_text(item);
+  return bridges::json_text(item);
 }
 
 std::string path_text(const std::string& channel, const VehiclePath& path, std::int64_t time_us) {
   Json points = Json::array();
   for (const VehiclePath::Point& point : path.points)
     points.push_back({point.x_m, point.y_m, number_or_null(point.depth_m)});
-  return json_text({{"channel", channel},
-                    {"vehicle", path_vehicle(channel)},
-                    {"time_us", time_us},
-                    {"points", std::move(points)},
-                    {"loop", path.loop}});
+  return bridges::json_text({{"channel", channel},
+                             {"vehicle", path_vehicle(channel)},
+                             {"time_us", time_us},
+                             {"points", std::move(points)},
+                             {"loop", path.loop}});
 }
 
 void ViewMessages::take(std::string_view channel, std::span<const std::byte> payload) {
@@ -145,7 +145,7 @@ void ViewMessages::take_sound(std::span<const std::byte> payload) {
                   {"bytes", sound.bytes},
                   {"to", sound.to},
                   {"kind", sound.kind}};
-  server_.send_text(json_text({{"op", "sounds"}, {"items", Json::array({item})}}));
+  server_.send_text(bridges::json_text({{"op", "sounds"}, {"items", Json::array({item})}}));
 }
 
 void ViewMessages::take_arrival(std::span<const std::byte> payload) {
@@ -160,22 +160,22 @@ void ViewMessages::take_arrival(std::span<const std::byte> payload) {
                   {"snr_dB", arrival.snr_dB},
                   {"outcome", received ? "none" : arrival.outcome},
                   {"delivered", received && arrival.addressed != 0}};
-  server_.send_text(json_text({{"op", "receptions"}, {"items", Json::array({item})}}));
+  server_.send_text(bridges::json_text({{"op", "receptions"}, {"items", Json::array({item})}}));
 }
 
 void ViewMessages::take_event(std::span<const std::byte> payload) {
   const auto event = shoal::decode<shoal::sim_event_t>(payload, shoal::Finite::required);
-  std::string item =
-      json_text({{"time_us", time_us(event.utime)}, {"kind", event.kind}, {"who", event.who}, {"text", event.text}});
+  std::string item = bridges::json_text(
+      {{"time_us", time_us(event.utime)}, {"kind", event.kind}, {"who", event.who}, {"text", event.text}});
   if (server_.clients() > 0) server_.send_text("{\"op\":\"events\",\"items\":[" + item + "]}");
   earlier_.add(std::move(item));
 }
 
 void ViewMessages::take_current(std::span<const std::byte> payload) {
   const auto current = shoal::decode<shoal::sim_current_t>(payload, shoal::Finite::required);
-  server_.retain("current", json_text({{"op", "current"},
-                                       {"time_us", time_us(current.utime)},
-                                       {"velocity_mps", point(current.velocity_mps)}}));
+  server_.retain("current", bridges::json_text({{"op", "current"},
+                                                {"time_us", time_us(current.utime)},
+                                                {"velocity_mps", point(current.velocity_mps)}}));
 }
 
 void ViewMessages::take_scores(std::span<const std::byte> payload) {
@@ -196,10 +196,10 @@ void ViewMessages::take_scores(std::span<const std::byte> payload) {
                      {"holds", scores.holds[i] != 0},
                      {"value", number_or_null(scores.left[i])},
                      {"bound", number_or_null(scores.right[i])}});
-  server_.retain("scores", json_text({{"op", "scores"},
-                                      {"time_us", time_us(scores.utime)},
-                                      {"metrics", std::move(metrics)},
-                                      {"rules", std::move(rules)}}));
+  server_.retain("scores", bridges::json_text({{"op", "scores"},
+                                               {"time_us", time_us(scores.utime)},
+                                               {"metrics", std::move(metrics)},
+                                               {"rules", std::move(rules)}}));
 }
 
 /// Kept even if no page is connected: paths are rare, and a page that connects later needs them.

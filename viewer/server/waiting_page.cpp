@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "viewer/server/waiting_page.hpp"
 
-#include "viewer/page_data/view_json.hpp"
+#include "bridges/base/json_text.hpp"
 
 namespace viewer {
 
@@ -10,7 +10,7 @@ WaitingPage::WaitingPage(const experiment::ViewOptions& options, const std::stri
     : server_(web_options(options)) {
   nlohmann::json hello = hello_json(version, "run", world, 0);
   hello["problem"] = problem;
-  server_.retain("hello", json_text(hello));
+  server_.retain("hello", bridges::json_text(hello));
 }
 
 void WaitingPage::serve() {

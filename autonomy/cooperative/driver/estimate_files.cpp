@@ -10,17 +10,16 @@
 #include <limits>
 #include <stdexcept>
 
+#include "autonomy/filters/chi_square.hpp"
 #include "bridges/log/event_log.hpp"
 #include "bridges/log/record_file.hpp"
+#include "experiment/score/trajectory/estimate_file.hpp"
 #include "experiment/score/trajectory/mrclam_files.hpp"
-#include "experiment/score/trajectory/tum_file.hpp"
 #include "shoal/message_codec.hpp"
 
 namespace navigation {
 
 namespace {
-
-constexpr double chi_square_95 = 5.991464547107979;  ///< with 2 degrees of freedom
 
 std::ofstream opened(const std::filesystem::path& path) {
   std::ofstream file(path);
@@ -90,7 +89,7 @@ NavScore score_of(const std::vector<OfflineRun::Published>& estimates, const std
     const double nees = is_covariance ? error.dot(P.inverse() * error) : std::numeric_limits<double>::infinity();
     squares += error.squaredNorm();
     score.nees += nees;
-    score.inside_95 += nees <= chi_square_95 ? 1 : 0;
+    score.inside_95 += nees <= autonomy::chi_square_95_2 ? 1 : 0;
     ++score.samples;
   }
   score.rms_m = std::sqrt(squares / score.samples);

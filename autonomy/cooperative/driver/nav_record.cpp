@@ -11,7 +11,6 @@
 
 #include "autonomy/cooperative/driver/land_team.hpp"
 #include "bridges/log/record_reader.hpp"
-#include "bridges/log/run_info.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
 #include "sim/config/param_reader.hpp"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "autonomy/cooperative/driver/vehicle_reports.hpp"
+#include "autonomy/filters/chi_square.hpp"
 
 namespace navigation {
 
@@ -14,8 +15,8 @@ struct NavOptions {
   VehicleReports::Start start;
   SoundModel sound = SoundModel::straight;
   std::size_t frame_bytes = 32;
-  double gate = 10.83;               ///< 99.9 % of chi-square with 1 degree of freedom
-  std::int64_t period_us = 500'000;  ///< between two decisions
+  double gate = autonomy::chi_square_999_1;  ///< squared innovation over its variance
+  std::int64_t period_us = 500'000;          ///< between two decisions
 };
 
 /// A vehicle that navigates by an algorithm.  A value, whose state is a function of the reports and the calls in their

@@ -7,13 +7,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "autonomy/filters/chi_square.hpp"
+
 namespace navigation {
 
 namespace {
 
-constexpr double position_gate = 13.82;  ///< 99.9 % of chi-square with 2 degrees of freedom
-constexpr int max_refused_fixes = 5;     ///< in a row
-constexpr double min_seen_m = 0.1;       ///< least distance at which a bearing has its error
+constexpr int max_refused_fixes = 5;  ///< in a row
+constexpr double min_seen_m = 0.1;    ///< least distance at which a bearing has its error
 
 double square(double x) {
   return x * x;
@@ -249,7 +250,7 @@ JointFilter::Outcome JointFilter::fix(int vehicle, const Vector2& p_W, double st
   const Matrix2 R = square(std_m) * Matrix2::Identity();
   if (gate_ > 0) {
     const Matrix2 S = H * P_ * H.transpose() + R;
-    if (!(innovation.dot(S.inverse() * innovation) <= position_gate)) {
+    if (!(innovation.dot(S.inverse() * innovation) <= autonomy::chi_square_999_2)) {
       // Several refusals in a row mean that the filter is wrong, not the receiver. Its variance grows by the squared
       // innovation, and the fix is used.
       if (++part.refused_fixes < max_refused_fixes || !innovation.allFinite()) return Outcome::refused;
@@ -377,7 +378,7 @@ JointFilter::RelativeRow JointFilter::relative_row(int own, int other, const Rel
 }
 
 bool JointFilter::within_gate(const Vector2& innovation, const Matrix2& S) const {
-  return gate_ <= 0 || innovation.dot(S.inverse() * innovation) <= position_gate;
+  return gate_ <= 0 || innovation.dot(S.inverse() * innovation) <= autonomy::chi_square_999_2;
 }
 
 bool JointFilter::within_gate(const RelativeRow& row, const Matrix2& more) const {

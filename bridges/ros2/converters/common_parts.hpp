@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "bridges/ros2/cdr_writer.hpp"
+#include "bridges/ros2/cdr.hpp"
 #include "bridges/ros2/converter.hpp"
 #include "bridges/ros2/ros2_names.hpp"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/ros2/converter.hpp"
 #include "bridges/ros2/converters/common_parts.hpp"
+#include "shoal/compass_t.hpp"
 #include "shoal/imu_t.hpp"
 #include "shoal/ins_t.hpp"
 
@@ -32,6 +33,16 @@ bool write_ins(const shoal::ins_t& message, std::string_view channel, CdrWriter&
 
 SHOAL_ROS2_CONVERTER(write_imu, "sensor_msgs/msg/Imu", "imu");
 SHOAL_ROS2_CONVERTER(write_ins, "sensor_msgs/msg/Imu", "imu");
+
+bool write_field(const shoal::compass_t& message, std::string_view channel, CdrWriter& out) {
+  constexpr double tesla_per_uT = 1e-6;
+  put_header(out, message.utime, frame_of(channel));
+  for (const double field_uT : message.field_uT) out.put(field_uT * tesla_per_uT);
+  out.put_array(std::span<const double>(unknown_3x3));
+  return true;
+}
+
+SHOAL_ROS2_CONVERTER(write_field, "sensor_msgs/msg/MagneticField", "field");
 
 }  // namespace
 }  // namespace bridges::ros2

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "bridges/ros2/cdr_writer.hpp"
+#include "bridges/ros2/cdr.hpp"
 #include "sim/base/math.hpp"
 
 namespace bridges::ros2 {

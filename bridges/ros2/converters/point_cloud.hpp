@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-#include "bridges/ros2/cdr_writer.hpp"
+#include "bridges/ros2/cdr.hpp"
 
 namespace bridges::ros2 {
 

@@ -3,7 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
+
+#include "sim/image/image.hpp"
 
 namespace experiment {
 
@@ -33,5 +36,15 @@ struct GridMap {
 
 /// Largest number of cells of a map.
 inline constexpr std::int64_t max_map_cells = 64'000'000;
+
+/// Returns the image of a map as ROS map_server reads and saves it: north up, 0 occupied, 254 free, 205 unknown.  The
+/// inside of objects is unknown.
+sim::Image8 map_image(const GridMap& map);
+/// Returns the YAML file of map_server for an image beside it: `image`, `mode`, `resolution` in m, `origin` (x and y of
+/// the lower left corner in m, yaw), `negate`, `occupied_thresh`, `free_thresh`.
+std::string map_yaml(const GridMap& map, const std::string& image);
+/// Writes `path`, a .png, and beside it the .yaml of the same name.  Returns the path of the latter.  Throws
+/// std::runtime_error with the path when a file cannot be written.
+std::string write_map(const std::string& path, const GridMap& map);
 
 }  // namespace experiment

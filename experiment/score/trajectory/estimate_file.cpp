@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "experiment/score/trajectory/estimate_file.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
+#include <cstring>
 #include <map>
 #include <set>
+#include <stdexcept>
 
 #include "experiment/files/line_reader.hpp"
 #include "sim/config/message_text.hpp"
 
 namespace experiment {
-
 namespace {
 
 /// UTC of the year 5138, and beyond any run.
@@ -147,6 +151,30 @@ EstimateFile parse_estimates(std::string_view text, const std::string& file) {
   if (estimates.rows.empty()) reader.fail(1, "must have an estimate");
   estimates.has_height = columns->contains("z");
   return estimates;
+}
+
+namespace {
+
+std::runtime_error tum_error(const std::string& path) {
+  return std::runtime_error(path + ": cannot be written: " + std::strerror(errno));
+}
+
+}  // namespace
+
+TumFile::TumFile(const std::string& path) : path_(path), file_(std::fopen(path.c_str(), "w")) {
+  if (!file_) throw tum_error(path);
+  std::fputs("# t x y z qx qy qz qw\n", file_.get());
+}
+
+void TumFile::add(double time_s, const sim::Vector3d& p_W, const sim::Quaterniond& q_WB) {
+  const std::string line = fmt::format("{:.6f} {:.6f} {:.6f} {:.6f} {:.9f} {:.9f} {:.9f} {:.9f}\n", time_s, p_W.x(),
+                                       p_W.y(), p_W.z(), q_WB.x(), q_WB.y(), q_WB.z(), q_WB.w());
+  std::fputs(line.c_str(), file_.get());
+}
+
+void TumFile::close() {
+  const bool bad = std::ferror(file_.get()) != 0;
+  if (std::fclose(file_.release()) != 0 || bad) throw tum_error(path_);
 }
 
 }  // namespace experiment

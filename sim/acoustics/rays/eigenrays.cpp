@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "sim/acoustics/rays/twin_rays.hpp"
+#include "sim/acoustics/rays/caustic.hpp"
 
 namespace sim {
 

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "experiment/score/map/map_files.hpp"
+#include "experiment/score/map/grid_map.hpp"
 
 namespace {
 

@@ -13,7 +13,6 @@
 #include <cstdlib>
 
 #include "bridges/bus/lcm_bus.hpp"
-#include "bridges/bus/reach_check.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 #include "tests/bridges/lcm/own_network.hpp"
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "bridges/ros2/cdr_transcoder.hpp"
+#include "bridges/ros2/cdr.hpp"
 #include "shoal/gps_data_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_scene_t.hpp"

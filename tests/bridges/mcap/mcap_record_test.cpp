@@ -9,7 +9,7 @@
 #include <iterator>
 
 #include "bridges/mcap/mcap_reader.hpp"
-#include "bridges/ros2/cdr_transcoder.hpp"
+#include "bridges/ros2/cdr.hpp"
 #include "shoal/gps_data_t.hpp"
 #include "shoal/sim_info_t.hpp"
 #include "shoal/utime_t.hpp"

@@ -5,7 +5,6 @@
 
 #include "bridges/ros2/converter.hpp"
 #include "bridges/ros2/ros2_schema.hpp"
-#include "bridges/ros2/standard_types.hpp"
 
 namespace {
 

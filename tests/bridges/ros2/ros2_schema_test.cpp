@@ -8,7 +8,6 @@
 
 #include "bridges/ros2/converter.hpp"
 #include "bridges/ros2/ros2_names.hpp"
-#include "bridges/ros2/standard_types.hpp"
 
 namespace {
 

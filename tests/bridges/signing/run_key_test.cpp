@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "bridges/base/bus_error.hpp"
-#include "bridges/bus/bus_reach.hpp"
+#include "bridges/bus/network_check.hpp"
 #include "bridges/lcm/lcm_connection.hpp"
 #include "bridges/lockstep/control_guard.hpp"
 #include "bridges/signing/signed_message.hpp"

@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 
 #include "bridges/base/bus_error.hpp"
-#include "bridges/bus/bus_reach.hpp"
+#include "bridges/bus/network_check.hpp"
 #include "bridges/lcm/lcm_connection.hpp"
 #include "bridges/lockstep/control_guard.hpp"
 #include "shoal/message_codec.hpp"

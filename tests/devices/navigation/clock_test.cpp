@@ -11,7 +11,7 @@
 #include "shoal/imu_t.hpp"
 #include "shoal/modem_received_t.hpp"
 #include "shoal/modem_send_t.hpp"
-#include "sim/bus/utime_stamp.hpp"
+#include "sim/bus/bus.hpp"
 #include "sim/world/world_editor.hpp"
 #include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"

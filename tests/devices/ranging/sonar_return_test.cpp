@@ -8,7 +8,7 @@
 #include "shoal/multibeam_t.hpp"
 #include "shoal/side_scan_t.hpp"
 #include "shoal/sonar_range_t.hpp"
-#include "sim/medium/absorption.hpp"
+#include "sim/medium/sea_water.hpp"
 #include "tests/devices/navigation/immersed_sensor_fixture.hpp"
 #include "tests/devices/ranging/ranging_fixture.hpp"
 

@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "experiment/campaign/engines.hpp"
-#include "experiment/study/run_claim.hpp"
 #include "experiment/study/run_files.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/scratch_folder.hpp"

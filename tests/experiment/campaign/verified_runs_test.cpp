@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "experiment/report/study_report.hpp"
+#include "experiment/report/report_page.hpp"
 #include "experiment/study/algorithm_table.hpp"
 #include "experiment/study/study_algorithms.hpp"
 #include "tests/experiment/study/algorithm_study.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "bridges/control/spawned_vehicles.hpp"
-#include "experiment/drive/drive_error.hpp"
+#include "experiment/drive/drive_profile.hpp"
 #include "shoal/ackermann_command_t.hpp"
 #include "shoal/actuator_command_t.hpp"
 #include "shoal/helm_command_t.hpp"

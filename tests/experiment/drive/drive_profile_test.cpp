@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 
 #include "bridges/control/spawned_vehicles.hpp"
-#include "experiment/drive/drive_error.hpp"
 #include "experiment/drive/drive_mapping.hpp"
 #include "sim/device/device_registry.hpp"
 

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "experiment/drive/drive_keys.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/twist_command_t.hpp"
 
@@ -83,6 +82,19 @@ TEST_F(DriverTest, ATappedKeyMovesForAFifthOfASecondOnly) {
     EXPECT_NE(speed_at(ms * 1ms), 0) << ms;
   }
   EXPECT_EQ(speed_at(1200ms), 0);
+}
+
+using namespace std::chrono_literals;
+
+TEST(DriveKeys, StepsStopAtFullDeflectionAndComeBackToZero) {
+  experiment::DriveKeys keys(experiment::read_drive_profile("").keys);
+  for (int i = 0; i < 9; ++i) keys.press("w");
+  EXPECT_EQ(keys.values().at("forward"), 1);
+  for (int i = 0; i < 4; ++i) keys.press("s");
+  EXPECT_EQ(keys.values().at("forward"), 0);
+  keys.press("a");
+  EXPECT_EQ(keys.press("x"), experiment::DriveKeys::Effect::none);
+  EXPECT_TRUE(keys.values().empty());
 }
 
 }  // namespace

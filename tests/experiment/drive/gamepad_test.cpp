@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <linux/input.h>
 
-#include "experiment/drive/drive_error.hpp"
+#include "experiment/drive/drive_profile.hpp"
 #include "experiment/drive/input_events.hpp"
 
 namespace {

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "experiment/drive/drive_error.hpp"
+#include "experiment/drive/drive_profile.hpp"
 #include "experiment/drive/gamepad.hpp"
 #include "experiment/drive/input_events.hpp"
 #include "tests/experiment/drive/input_events_fixture.hpp"

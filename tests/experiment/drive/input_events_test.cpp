@@ -6,7 +6,7 @@
 
 #include <cstring>
 
-#include "experiment/drive/drive_error.hpp"
+#include "experiment/drive/drive_profile.hpp"
 #include "experiment/drive/gamepad.hpp"
 #include "tests/experiment/drive/input_events_fixture.hpp"
 

@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 
 #include "experiment/files/html.hpp"
-#include "experiment/files/png_check.hpp"
 #include "experiment/report/report_page.hpp"
 #include "experiment/run/runner.hpp"
 #include "experiment/run/version.hpp"

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiment/report/run_words.hpp"
-
 #include <gmock/gmock.h>
 
 #include "experiment/files/html.hpp"
-#include "experiment/files/png_check.hpp"
 #include "experiment/report/report_page.hpp"
 #include "experiment/run/runner.hpp"
 #include "experiment/run/version.hpp"

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "experiment/results/earlier_run.hpp"
 #include "experiment/results/results.hpp"
+#include "experiment/results/results_folder.hpp"
 #include "experiment/run/runner.hpp"
 #include "sim/config/config_node.hpp"
 #include "tests/devices/world_fixture.hpp"

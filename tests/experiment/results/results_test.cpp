@@ -8,7 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "experiment/results/earlier_run.hpp"
+#include "experiment/results/results_folder.hpp"
 #include "experiment/run/runner.hpp"
 #include "sim/config/config_node.hpp"
 #include "sim/world_file/load_world.hpp"

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "experiment/results/earlier_run.hpp"
 #include "experiment/results/results.hpp"
+#include "experiment/results/results_folder.hpp"
 #include "experiment/run/runner.hpp"
 #include "messages/yaml/message_writer.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"

@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "experiment/results/results_lock.hpp"
+#include "experiment/results/results_folder.hpp"
 #include "tests/experiment/results/quiet_runs.hpp"
 #include "tests/scratch_folder.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "experiment/campaign/verified_runs.hpp"
-#include "experiment/report/study_report.hpp"
+#include "experiment/report/report_page.hpp"
 #include "experiment/study/algorithm_table.hpp"
 #include "experiment/study/study_algorithms.hpp"
 #include "tests/devices/world_fixture.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "experiment/campaign/verified_runs.hpp"
-#include "experiment/report/study_report.hpp"
+#include "experiment/report/report_page.hpp"
 #include "experiment/study/study_algorithms.hpp"
 #include "tests/experiment/study/algorithm_study.hpp"
 

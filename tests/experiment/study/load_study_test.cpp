@@ -6,11 +6,11 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "experiment/report/study_report.hpp"
+#include "experiment/report/report_page.hpp"
 #include "experiment/results/results.hpp"
+#include "experiment/study/study_config.hpp"
 #include "experiment/study/study_curves.hpp"
 #include "experiment/study/study_results.hpp"
-#include "experiment/study/study_seeds.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/experiment/study/study_folder.hpp"
 #include "tests/project_paths.hpp"

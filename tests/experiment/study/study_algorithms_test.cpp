@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "experiment/campaign/verified_runs.hpp"
-#include "experiment/report/study_report.hpp"
+#include "experiment/report/report_page.hpp"
 #include "experiment/study/algorithm_table.hpp"
 #include "tests/experiment/study/algorithm_study.hpp"
 #include "tests/project_paths.hpp"

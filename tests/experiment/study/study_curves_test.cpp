@@ -5,10 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "experiment/report/study_report.hpp"
+#include "experiment/report/report_page.hpp"
 #include "experiment/results/results.hpp"
+#include "experiment/study/study_config.hpp"
 #include "experiment/study/study_results.hpp"
-#include "experiment/study/study_seeds.hpp"
 #include "tests/experiment/study/study_folder.hpp"
 #include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"

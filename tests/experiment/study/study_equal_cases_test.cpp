@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiment/study/study_equal_cases.hpp"
-
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
 
-#include "experiment/report/study_report.hpp"
+#include "experiment/report/report_page.hpp"
 #include "experiment/results/results.hpp"
+#include "experiment/study/study_config.hpp"
 #include "experiment/study/study_curves.hpp"
 #include "experiment/study/study_results.hpp"
-#include "experiment/study/study_seeds.hpp"
 #include "tests/experiment/study/study_folder.hpp"
 
 namespace {

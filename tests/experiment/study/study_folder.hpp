@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "experiment/report/study_report.hpp"
+#include "experiment/report/report_page.hpp"
 #include "experiment/results/results.hpp"
+#include "experiment/study/study_config.hpp"
 #include "experiment/study/study_curves.hpp"
 #include "experiment/study/study_results.hpp"
-#include "experiment/study/study_seeds.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/project_paths.hpp"
 #include "tests/scratch_folder.hpp"

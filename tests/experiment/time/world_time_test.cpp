@@ -2,6 +2,7 @@
 #include "experiment/time/world_time.hpp"
 
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "sim/world/world_state.hpp"
 #include "tests/experiment/run_parts_fixture.hpp"
@@ -109,6 +110,14 @@ TEST_F(WorldTimeTest, FindsTheStepBeforeAndSaysWhyThereIsNone) {
   EXPECT_EQ(time.step_before(3, 10), 10);
   EXPECT_THAT(refused_way_back(0), HasSubstr("needs a value above 0"));
   EXPECT_THAT(refused_way_back(0.004), HasSubstr("less than half a step of 0.01 s"));
+}
+
+TEST(SavedRun, IsSplitIntoWhatWasJoined) {
+  const experiment::SavedRun saved{sim::Bytes(5, std::byte{1}), {}, sim::Bytes(300, std::byte{3})};
+  const experiment::SavedRun again = experiment::split(experiment::joined(saved));
+  EXPECT_EQ(again.state, saved.state);
+  EXPECT_EQ(again.scores, saved.scores);
+  EXPECT_EQ(again.owners, saved.owners);
 }
 
 }  // namespace

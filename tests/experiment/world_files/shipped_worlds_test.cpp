@@ -8,7 +8,7 @@
 
 #include "experiment/process/process_check.hpp"
 #include "experiment/score/first_contacts.hpp"
-#include "sim/world/end_check.hpp"
+#include "sim/world/world_checks.hpp"
 #include "tests/devices/comms/port_fixture.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/project_paths.hpp"

@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include "sim/config/yaml_writer.hpp"
+#include "sim/config/config_node.hpp"
 #include "tests/project_paths.hpp"
 
 namespace {

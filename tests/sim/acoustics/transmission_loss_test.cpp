@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "sim/acoustics/ambient_noise.hpp"
-#include "sim/medium/absorption.hpp"
+#include "sim/medium/sea_water.hpp"
 #include "tests/fidelity/closed_forms.hpp"
 #include "tests/sim/acoustics/config_text.hpp"
 #include "tests/sim/medium/medium_worlds.hpp"

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "sim/base/thread_pool.hpp"
-#include "sim/base/work_within.hpp"
 
 namespace {
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/config/other_names.hpp"
-
 #include <gmock/gmock.h>
 
+#include "sim/config/message_text.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {

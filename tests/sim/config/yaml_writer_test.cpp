@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/config/yaml_writer.hpp"
-
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 

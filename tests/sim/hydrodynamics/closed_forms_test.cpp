@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/hydrodynamics/coefficient_model.hpp"
-#include "sim/model/spheroid.hpp"
+#include "sim/model/hydrodynamics_config.hpp"
 #include "sim/vehicle/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/sim/hydrodynamics/marine_worlds.hpp"

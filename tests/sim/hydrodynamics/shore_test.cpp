@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "sim/vehicle/vehicle.hpp"
-#include "sim/world/bottom_check.hpp"
+#include "sim/world/world_checks.hpp"
 #include "sim/world/world_editor.hpp"
 #include "sim/world/world_state.hpp"
 #include "tests/sim/hydrodynamics/floating_worlds.hpp"

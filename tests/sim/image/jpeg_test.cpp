@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/image/jpeg.hpp"
-
 #include <gmock/gmock.h>
 
 #include <cmath>

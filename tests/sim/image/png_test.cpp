@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/image/png.hpp"
-
 #include <gmock/gmock.h>
 
 #include "sim/image/image_file.hpp"

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "sim/medium/sea_water.hpp"
-#include "sim/medium/stability.hpp"
+#include "sim/medium/water_column.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/scratch_folder.hpp"
 #include "tests/sim/medium/log_capture.hpp"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/model/hydrodynamics_checks.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "sim/config/message_text.hpp"
 #include "sim/hydrodynamics/coefficient_model.hpp"
+#include "sim/model/hydrodynamics_config.hpp"
 #include "sim/vehicle/vehicle.hpp"
 #include "tests/devices/world_fixture.hpp"
 #include "tests/sim/hydrodynamics/marine_worlds.hpp"

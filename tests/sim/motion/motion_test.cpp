@@ -2,6 +2,7 @@
 #include "sim/motion/motion.hpp"
 
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <fstream>
 #include <numbers>
@@ -94,6 +95,20 @@ TEST(JointMotion, SaysWhereAndWhatIsWrong) {
               HasSubstr("'angles' must be one of: deg, rad"));
   EXPECT_THAT(error("frames: none.csv\n"), HasSubstr("none.csv' does not exist"));
   EXPECT_THAT(error("kys: []\n"), HasSubstr("unknown key 'kys'"));
+}
+
+TEST(JointName, IsTextOfOneTo255Bytes) {
+  for (const std::string& name : {std::string("hip"), std::string("linke Hüfte"), std::string(255, 'x')})
+    EXPECT_EQ(sim::joint_name_error(name), "") << name;
+  EXPECT_NE(sim::joint_name_error(std::string(256, 'x')), "");
+  EXPECT_EQ(sim::joint_name_error(""),
+            "the name of a joint must be UTF-8 text of 1 to 255 bytes without control characters, got ''");
+}
+
+TEST(JointName, HasNoControlCharactersAndNoBytesThatAreNoText) {
+  EXPECT_EQ(sim::joint_name_error("hip\xe9"),
+            "the name of a joint must be UTF-8 text of 1 to 255 bytes without control characters, got 'hip\\xe9'");
+  for (const char* name : {"a\nb", "a\tb", "\x7f", "\x1b[31m"}) EXPECT_NE(sim::joint_name_error(name), "") << name;
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cylinders on hinges, whose contacts sim/ode/wheel_contacts.hpp moves.
+// Cylinders on hinges, whose contacts sim/ode/find_contacts.hpp moves.
 #include <gtest/gtest.h>
 
 #include <cmath>

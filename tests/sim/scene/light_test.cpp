@@ -2,6 +2,7 @@
 #include "sim/scene/light.hpp"
 
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <cmath>
 
@@ -32,6 +33,16 @@ TEST(Light, SaysWhatIsWrongWithAColor) {
                                       [&](sim::ParamReader& in) { light.read(in); }),
               testing::ElementsAre("w.yaml:1:16: 'zenith_color' must look like #rrggbb, got 'blue'",
                                    "w.yaml:1:37: 'horizon_color' must look like #rrggbb, got '#12345'"));
+}
+
+TEST(Color, HasTwoHexadecimalDigitsForEachPart) {
+  EXPECT_EQ(sim::parse_color("#0a80ff"), (sim::Color{10, 128, 255}));
+  EXPECT_EQ(sim::parse_color("#FFffFf"), (sim::Color{255, 255, 255}));
+}
+
+TEST(Color, OtherTextsAreNone) {
+  for (const char* text : {"", "#", "0a80ff", "#0a80f", "#0a80ff0", "#0a80fg", "#+a80ff", "# a80ff", "#-180ff", "red"})
+    EXPECT_FALSE(sim::parse_color(text)) << text;
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include "sim/config/diagnostics.hpp"
 #include "sim/state/state_archive.hpp"
-#include "sim/vehicle/world_error.hpp"
 #include "tests/devices/world_fixture.hpp"
 
 namespace {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "sim/world/start_check.hpp"
-
 #include <gmock/gmock.h>
 
+#include "sim/world/world_checks.hpp"
 #include "sim/world/world_editor.hpp"
 #include "sim/world/world_state.hpp"
 #include "tests/devices/world_fixture.hpp"

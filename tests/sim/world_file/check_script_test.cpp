@@ -35,4 +35,49 @@ TEST(CheckScript, ActionsWithinActionsAreCheckedToo) {
               HasSubstr("there is no device 'r1/gps'; devices are named VEHICLE/DEVICE"));
 }
 
+// What `set` may not change while a device runs.
+
+struct Case {
+  std::string device, key, value;
+};
+
+TEST(DeviceChange, RefusesKeysThatOnlyConstructionUses) {
+  const std::string wheels = ", left_joint: left, right_joint: right";
+  const std::string ackermann =
+      "ackermann_drive, left_steer_joint: left, right_steer_joint: right, drive_joints: [left, right]";
+  const std::string skid = "skid_steer, left_joints: [left], right_joints: [right]";
+  for (const Case& c : std::vector<Case>{{"joint_state", "joints", "[left]"},
+                                         {"joint_state", "effort", "false"},
+                                         {"joint_load, joint: left", "joint", "right"},
+                                         {"wheel_encoder, joints: [left]", "joints", "[right]"},
+                                         {"wheel_encoder, joints: [left]", "ticks_per_revolution", "7"},
+                                         {"bumper", "parts", "[chassis/hull]"},
+                                         {ackermann, "left_steer_joint", "right"},
+                                         {ackermann, "right_steer_joint", "left"},
+                                         {ackermann, "drive_joints", "[left]"},
+                                         {skid, "left_joints", "[right]"},
+                                         {skid, "right_joints", "[left]"},
+                                         {"differential_drive" + wheels, "left_joint", "right"},
+                                         {"differential_drive" + wheels, "right_joint", "left"},
+                                         {"joint_servo, joint: left", "joint", "right"},
+                                         {"joint_servo, joint: left", "axis", "1"},
+                                         {"joint_servo, joint: left", "alias", "l"},
+                                         {"joint_motor, joint: left", "joint", "right"},
+                                         {"buoyancy_engine", "initial_m3", "1e-5"},
+                                         {"moving_mass", "motion", "turn"},
+                                         {"sail", "initial_deg", "40"},
+                                         {"battery", "initial_charge", "0.5"}}) {
+    test::TestWorld test(test::rover_world("        - {name: d, type: " + c.device + "}\n"));
+    EXPECT_THAT(test.change("r1/d", "{" + c.key + ": " + c.value + "}"),
+                testing::HasSubstr("'" + c.key + "' cannot change while the device runs"))
+        << c.device;
+  }
+}
+
+TEST(DeviceChange, OtherKeysOfTheSameDevicesChange) {
+  test::TestWorld test(test::rover_world("        - {name: d, type: joint_load, joint: left}\n"));
+  EXPECT_EQ(test.change("r1/d", "{frame: world}"), "");
+  EXPECT_EQ(test.change("r1/d", "{force_noise: {gaussian_std: 1}}"), "");
+}
+
 }  // namespace

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/command_line/arguments.hpp"
-
 #include <gtest/gtest.h>
 
 #include "tests/tools/command_line/arguments_fixture.hpp"
 #include "tools/command_line/checks.hpp"
 #include "tools/command_line/help.hpp"
+#include "tools/command_line/parse.hpp"
 
 namespace {
 

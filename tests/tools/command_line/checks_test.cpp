@@ -4,8 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tools/command_line/arguments.hpp"
 #include "tools/command_line/help.hpp"
+#include "tools/command_line/parse.hpp"
 
 namespace {
 

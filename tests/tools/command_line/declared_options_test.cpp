@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <CLI/CLI.hpp>
+
 #include "tools/command_line/help.hpp"
 
 namespace {
@@ -119,6 +121,28 @@ TEST(DeclaredOptions, StandInTheHelp) {
   EXPECT_THAT(pilot.out, HasSubstr("how fast (from 0 to 5; default 1.5)"));
   EXPECT_THAT(pilot.out, HasSubstr("--start-m [X,Y]"));
   EXPECT_THAT(pilot.out, HasSubstr("--orders [[TIME,DEPTH,SPEED],...]"));
+}
+
+using testing::ElementsAre;
+
+std::vector<std::string> names_of(std::vector<std::string> words) {
+  CLI::App app;
+  std::vector<std::string> names;
+  command_line::add_name_list(app, "--joints", names, "which");
+  std::reverse(words.begin(), words.end());  // as CLI11 takes them
+  app.parse(words);
+  return names;
+}
+
+TEST(NameList, HasNamesBetweenCommas) {
+  EXPECT_THAT(names_of({"--joints", "hip,knee"}), ElementsAre("hip", "knee"));
+  EXPECT_THAT(names_of({"--joints", "hip", "--joints", "knee,toe"}), ElementsAre("hip", "knee", "toe"));
+  EXPECT_THAT(names_of({}), testing::IsEmpty());
+}
+
+TEST(NameList, AnEmptyNameIsAnError) {
+  for (const char* text : {",", "hip,", ",hip", "hip,,knee"})
+    EXPECT_THROW(names_of({std::string("--joints=") + text}), CLI::ValidationError) << text;
 }
 
 }  // namespace

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/tools/command_line/arguments_fixture.hpp"
-#include "tools/command_line/arguments.hpp"
 #include "tools/command_line/checks.hpp"
+#include "tools/command_line/parse.hpp"
 
 namespace {
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "verification/fidelity/fidelity_report.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

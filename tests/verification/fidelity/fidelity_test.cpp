@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/fidelity/fidelity_files.hpp"
-#include "verification/fidelity/fidelity_report.hpp"
 
 namespace {
 

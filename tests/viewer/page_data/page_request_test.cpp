@@ -2,8 +2,11 @@
 #include "viewer/page_data/page_request.hpp"
 
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
 
 namespace {
 
@@ -67,6 +70,41 @@ TEST(PageRequest, AnInvalidSeriesSaysWhatIsWrong) {
   EXPECT_EQ(error_of_series({{"points", 4001}}), "series: 'points' must be an integer from 2 to 4000, got 4001");
   EXPECT_EQ(error_of_series({{"field", std::string(257, 'x')}}), "series: 'field' must be a text of 1 to 256 bytes");
   EXPECT_EQ(error_of_series({{"channel", nullptr}}), "series: 'channel' must be a text of 1 to 63 bytes");
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    viewer::parse_look(text);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(LookRequest, NamesATimeOfABranch) {
+  const viewer::LookRequest request = viewer::parse_look(R"({"time_us": 1500000, "branch": 2})");
+  EXPECT_EQ(request.time_us, 1'500'000);
+  EXPECT_EQ(request.branch, 2);
+  EXPECT_EQ(viewer::parse_look(R"({"time_us": -2.5})").time_us, -3);  // at or before it
+}
+
+TEST(LookRequest, WithoutATimeThePageShowsThePresent) {
+  const viewer::LookRequest request = viewer::parse_look(R"({"time_us": null, "branch": null})");
+  EXPECT_FALSE(request.time_us);
+  EXPECT_FALSE(request.branch);
+}
+
+TEST(LookRequest, SaysWhatIsWrong) {
+  EXPECT_EQ(error_of("[1]"), "look: must be a JSON object");
+  EXPECT_EQ(error_of("{"), "look: must be a JSON object");
+  EXPECT_EQ(error_of("{}"), "look: 'time_us' is missing");
+  EXPECT_EQ(error_of(R"({"time_us": "now"})"),
+            R"(look: 'time_us' must be null or a number from -1e18 to 1e18, got "now")");
+  EXPECT_EQ(error_of(R"({"time_us": 2e18})"), "look: 'time_us' must be null or a number from -1e18 to 1e18, got 2e+18");
+  EXPECT_EQ(error_of(R"({"time_us": 0, "branch": -1})"), "look: 'branch' must be the number of a branch, got -1");
+  EXPECT_EQ(error_of(R"({"time_us": 0, "branch": 3000000000})"),
+            "look: 'branch' must be the number of a branch, got 3000000000");
+  EXPECT_EQ(error_of(R"({"time_us": 0, "branch": 0.5})"), "look: 'branch' must be the number of a branch, got 0.5");
 }
 
 }  // namespace

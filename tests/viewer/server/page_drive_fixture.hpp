@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "experiment/drive/drive_error.hpp"
+#include "experiment/drive/drive_profile.hpp"
 #include "tests/experiment/replay/replay_fixture.hpp"
-#include "viewer/server/forms_text.hpp"
 #include "viewer/server/page_drive.hpp"
 
 namespace page_drive_fixture {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/programs/navigation/nav_list.hpp"
-
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -9,10 +7,10 @@
 #include <vector>
 
 #include "autonomy/cooperative/estimator/estimator_registry.hpp"
+#include "tools/command_line/declared_options.hpp"
 #include "tools/command_line/help.hpp"
-#include "tools/command_line/name_list.hpp"
 #include "tools/command_line/parse.hpp"
-#include "tools/command_line/plugin_option.hpp"
+#include "tools/programs/navigation/nav_commands.hpp"
 
 namespace navigation {
 

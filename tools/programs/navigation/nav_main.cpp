@@ -7,10 +7,9 @@
 #include "autonomy/cooperative/driver/nav_arguments.hpp"
 #include "autonomy/cooperative/driver/nav_pilot.hpp"
 #include "shoal/sim_info_t.hpp"
-#include "tools/command_line/plugin_option.hpp"
+#include "tools/command_line/declared_options.hpp"
 #include "tools/programs/marine_options.hpp"
-#include "tools/programs/navigation/nav_list.hpp"
-#include "tools/programs/navigation/nav_offline.hpp"
+#include "tools/programs/navigation/nav_commands.hpp"
 #include "tools/programs/program.hpp"
 
 namespace {

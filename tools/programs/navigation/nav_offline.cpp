@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/programs/navigation/nav_offline.hpp"
-
 #include <spdlog/fmt/fmt.h>
 
 #include <CLI/App.hpp>
@@ -14,10 +12,10 @@
 
 #include "autonomy/cooperative/driver/estimate_files.hpp"
 #include "tools/command_line/checks.hpp"
+#include "tools/command_line/declared_options.hpp"
 #include "tools/command_line/help.hpp"
-#include "tools/command_line/name_list.hpp"
 #include "tools/command_line/parse.hpp"
-#include "tools/command_line/plugin_option.hpp"
+#include "tools/programs/navigation/nav_commands.hpp"
 #include "tools/programs/navigation/score_file.hpp"
 
 namespace navigation {

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "autonomy/cooperative/driver/estimate_files.hpp"
+#include "bridges/base/json_text.hpp"
 
 namespace navigation {
 
@@ -60,7 +61,7 @@ void ScoreFile::write(const std::string& path) const {
     json["algorithms"].push_back(std::move(entry));
   }
   std::ofstream file(path);
-  file << json.dump(1, ' ', false, Json::error_handler_t::replace) << '\n';
+  file << bridges::json_text(json, 1) << '\n';
   if (!file.flush()) throw std::runtime_error("cannot write '" + path + "'");
 }
 

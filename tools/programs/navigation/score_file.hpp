@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "autonomy/cooperative/driver/estimate_files.hpp"
 #include "autonomy/cooperative/driver/offline.hpp"
 
 namespace navigation {

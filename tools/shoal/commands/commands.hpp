@@ -37,4 +37,9 @@ std::string outside_command(const std::string& name);
 /// Returns what to call in place of a command of other programs, such as `play`; empty: nothing is known.
 std::string meant_call(const std::string& name);
 
+/// Loads lib/shoal/NAME.so beside the folder of the program.  What it registers is there when this returns.  Of a build
+/// folder it is built first, if it is missing or older than the program.  Throws std::runtime_error when it is missing
+/// and cannot be built.
+void load_library(const std::string& name);
+
 }  // namespace tools

@@ -60,7 +60,7 @@ bool leaves_paused(const std::string& command, const std::string& reply) {
 
 int control(const ControlArguments& arguments) {
   const bool known = std::find(known_requests.begin(), known_requests.end(), arguments.command) != known_requests.end();
-  // Reject a misspelt request; the simulator decides about unknown ones.
+  // Reject a misspelled request; the simulator decides about unknown ones.
   if (const std::string meant = sim::closest_name(arguments.command, known_requests); !known && !meant.empty())
     throw command_line::UsageError("unknown request '" + sim::shortened(sim::printable(arguments.command)) +
                                    "'; did you mean '" + meant + "'?");

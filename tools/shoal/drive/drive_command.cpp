@@ -10,8 +10,7 @@
 #include <thread>
 
 #include "bridges/lcm/lcm_listener.hpp"
-#include "experiment/drive/drive_error.hpp"
-#include "experiment/drive/drive_keys.hpp"
+#include "experiment/drive/drive_profile.hpp"
 #include "experiment/drive/driver.hpp"
 #include "experiment/drive/gamepad_device.hpp"
 #include "experiment/process/signals.hpp"

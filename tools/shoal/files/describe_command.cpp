@@ -15,7 +15,6 @@
 #include "tools/command_line/completion.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/reference/json_schema.hpp"
-#include "tools/shoal/reference/param_tables.hpp"
 #include "tools/shoal/reference/reference_pages.hpp"
 
 namespace tools {

@@ -9,12 +9,11 @@
 #include <stdexcept>
 
 #include "messages/yaml/message_writer.hpp"
-#include "sim/config/shipped_files.hpp"
+#include "sim/config/file_access.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tools/shoal/commands/commands.hpp"
-#include "tools/shoal/options/output_file.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 #include "tools/shoal/start/start_files.hpp"
-#include "tools/shoal/start/start_program.hpp"
 
 namespace tools {
 

@@ -5,13 +5,13 @@
 #include <memory>
 #include <optional>
 
-#include "experiment/score/map/map_files.hpp"
+#include "experiment/score/map/grid_map.hpp"
 #include "experiment/score/map/published_map.hpp"
 #include "experiment/score/map/true_map.hpp"
 #include "sim/base/log.hpp"
 #include "tools/command_line/checks.hpp"
 #include "tools/shoal/commands/commands.hpp"
-#include "tools/shoal/options/output_file.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 #include "viewer/film/film_source.hpp"
 
 namespace tools {

@@ -12,11 +12,10 @@
 #include "tools/command_line/checks.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/film/image_options.hpp"
-#include "tools/shoal/options/output_file.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 #include "viewer/film/camera_rig.hpp"
 #include "viewer/film/film_source.hpp"
 #include "viewer/film/overlay.hpp"
-#include "viewer/film/ping_observer.hpp"
 #include "viewer/film/scene_painter.hpp"
 #include "viewer/images/overview.hpp"
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "sim/geometry/mesh.hpp"
@@ -23,5 +26,20 @@ sim::Mesh import_mesh(const std::string& path, const MeshImportOptions& options)
 
 /// Writes binary STL or OBJ, according to the extension.  Throws sim::MeshError.
 void save_mesh(const sim::Mesh& mesh, const std::string& path);
+
+/// Error of the child process; what() is `failed on this file` or `took longer than 60 s`.
+class ChildError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct ChildLimits {
+  double time_s = 60;
+  std::size_t memory_bytes = std::size_t{4} << 30;  ///< of address space; not with AddressSanitizer, which needs more
+};
+
+/// Executes `work` in a child process, where crashes, endless loops and excessive memory are contained, and returns its
+/// bytes.  Its output is discarded.  Throws ChildError.
+std::string do_in_child(const std::function<std::string()>& work, const ChildLimits& limits);
 
 }  // namespace tools

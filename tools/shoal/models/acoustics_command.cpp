@@ -14,7 +14,7 @@
 #include "sim/world_file/load_world.hpp"
 #include "tools/command_line/checks.hpp"
 #include "tools/shoal/commands/commands.hpp"
-#include "tools/shoal/options/output_file.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 #include "verification/acoustics/acoustic_closed_forms.hpp"
 #include "verification/acoustics/acoustic_link.hpp"
 #include "verification/acoustics/ray_picture.hpp"

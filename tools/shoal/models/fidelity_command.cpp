@@ -7,7 +7,6 @@
 #include "tools/shoal/commands/commands.hpp"
 #include "verification/fidelity/fidelity.hpp"
 #include "verification/fidelity/fidelity_mutations.hpp"
-#include "verification/fidelity/fidelity_report.hpp"
 
 namespace tools {
 

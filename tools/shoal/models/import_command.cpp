@@ -9,11 +9,11 @@
 #include <stdexcept>
 
 #include "experiment/log_import/mrclam_record.hpp"
+#include "sim/config/file_access.hpp"
 #include "sim/config/message_text.hpp"
-#include "sim/config/shipped_files.hpp"
 #include "tools/shoal/commands/commands.hpp"
 #include "tools/shoal/mesh/mesh_import.hpp"
-#include "tools/shoal/options/output_file.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 #include "tools/shoal/urdf/shoal_names.hpp"
 #include "tools/shoal/urdf/urdf_import.hpp"
 

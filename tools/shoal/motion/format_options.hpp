@@ -4,6 +4,7 @@
 #include <CLI/App.hpp>
 #include <string>
 
+#include "motion/formats/joint_names.hpp"
 #include "motion/formats/motion_format.hpp"
 
 namespace tools {
@@ -33,5 +34,13 @@ std::string formats_text(bool is_import);
 
 /// Writes a file.  Throws std::runtime_error.
 void write_bytes(const std::string& path, const std::string& bytes);
+
+/// Returns the names of the joint servos of a vehicle file, with the lists of `names_file`; empty: of
+/// joint_names/NAME.yaml beside the vehicle file or among the shipped ones, where it exists.  Throws sim::ConfigError.
+motion::JointNames joint_names_of(const std::string& vehicle_file, const std::string& names_file);
+
+/// Returns the file of the vehicle that a motion names: NAME.yaml beside the motion or among the shipped ones; empty:
+/// there is none.
+std::string vehicle_file_of(const std::string& vehicle, const std::string& motion_file);
 
 }  // namespace tools

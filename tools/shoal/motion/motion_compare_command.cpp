@@ -16,9 +16,9 @@
 #include "sim/config/message_text.hpp"
 #include "sim/motion/motion_frames.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
+#include "tools/shoal/motion/format_options.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
-#include "tools/shoal/motion/vehicle_joints.hpp"
-#include "tools/shoal/options/output_file.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 
 namespace tools {
 

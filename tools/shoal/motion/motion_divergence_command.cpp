@@ -9,7 +9,7 @@
 #include "motion/analysis/perturbed_world.hpp"
 #include "tools/shoal/motion/format_options.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
-#include "tools/shoal/options/output_file.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 
 namespace tools {
 

@@ -13,10 +13,10 @@
 #include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
-#include "tools/command_line/name_list.hpp"
+#include "tools/command_line/declared_options.hpp"
+#include "tools/shoal/motion/format_options.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
 #include "tools/shoal/motion/motion_output.hpp"
-#include "tools/shoal/motion/vehicle_joints.hpp"
 
 namespace tools {
 

@@ -9,7 +9,6 @@
 #include "experiment/files/file_replacement.hpp"
 #include "motion/analysis/motion_file.hpp"
 #include "sim/config/message_text.hpp"
-#include "tools/shoal/options/output_file.hpp"
 #include "tools/shoal/options/shared_options.hpp"
 
 namespace tools {

@@ -14,7 +14,7 @@
 #include "sim/config/message_text.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
 #include "tools/shoal/motion/play_view.hpp"
-#include "tools/shoal/options/view_options.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 
 namespace tools {
 

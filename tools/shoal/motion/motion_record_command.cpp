@@ -15,12 +15,12 @@
 #include "sim/config/message_text.hpp"
 #include "sim/script/action_registry.hpp"
 #include "sim/world_file/vehicle_loader.hpp"
-#include "tools/command_line/name_list.hpp"
+#include "tools/command_line/declared_options.hpp"
+#include "tools/shoal/motion/format_options.hpp"
 #include "tools/shoal/motion/motion_commands.hpp"
 #include "tools/shoal/motion/motion_output.hpp"
 #include "tools/shoal/motion/record_session.hpp"
-#include "tools/shoal/motion/vehicle_joints.hpp"
-#include "tools/shoal/options/view_options.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 
 namespace tools {
 

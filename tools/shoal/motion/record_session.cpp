@@ -6,7 +6,7 @@
 #include <iostream>
 #include <thread>
 
-#include "experiment/drive/drive_error.hpp"
+#include "experiment/drive/drive_profile.hpp"
 #include "experiment/process/signals.hpp"
 #include "tools/shoal/options/shared_options.hpp"
 

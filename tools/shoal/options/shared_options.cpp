@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/shoal/options/shared_options.hpp"
 
+#include <CLI/App.hpp>
+
 #include "sim/base/log.hpp"
+#include "sim/base/number.hpp"
+#include "tools/command_line/checks.hpp"
 
 namespace tools {
 
@@ -51,6 +55,37 @@ void add_types_option(CLI::App& command, std::vector<std::string>& lcm_files) {
       ->type_name("FILE")
       ->type_size(1)
       ->allow_extra_args(false);
+}
+
+std::optional<double> parse_speed(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  if (text == "max") return 0.0;
+  if (const auto speed = sim::read_number(text); speed && *speed >= 0.001 && *speed <= 1e6) return speed;
+  throw CLI::ValidationError("--speed", "must be from 0.001 to 1e6, or max, got '" + text + "'");
+}
+
+void add_page_options(CLI::App& command, experiment::ViewOptions& view) {
+  command
+      .add_option("--view-port", view.port, "port of the live page; if it is taken, the next free one; 0: any free one")
+      ->type_name("PORT")
+      ->check(command_line::whole_from(0, 65535))
+      ->capture_default_str();
+  command
+      .add_option("--view-host", view.host,
+                  "address at which the live page listens; non-local addresses require the token for reading too")
+      ->type_name("ADDRESS")
+      ->capture_default_str();
+  command.add_option("--view-origin", view.origins, "additional web site whose pages may connect")
+      ->type_name("URL")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command.add_flag("--foxglove-control", view.foxglove_control,
+                   "any local Foxglove client may pause, rewind and change the run, or play the log");
+  command.add_option("--view-page", view.page_directory, "folder with the page, for its development")->type_name("DIR");
+}
+
+CLI::Option* add_open_option(CLI::App& command, bool& open) {
+  return command.add_flag("--open", open, "show the live page in the browser: $BROWSER, else xdg-open");
 }
 
 }  // namespace tools

@@ -2,13 +2,19 @@
 #pragma once
 
 #include <spdlog/fmt/fmt.h>
+#include <unistd.h>
 
 #include <CLI/App.hpp>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
 
+#include "experiment/run/run_page.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tools/command_line/checks.hpp"
+#include "tools/command_line/declared_options.hpp"
 #include "tools/command_line/help.hpp"
-#include "tools/command_line/plugin_option.hpp"
 
 namespace tools {
 
@@ -45,5 +51,25 @@ void add_threads_option(CLI::App& command, int& threads);
 
 /// Adds `--types FILE`: message types that are not part of Shoal.
 void add_types_option(CLI::App& command, std::vector<std::string>& lcm_files);
+
+/// Parses the value of --speed: `max` (0) or a multiple of real time; std::nullopt if it is empty.  Throws
+/// CLI::ValidationError.
+std::optional<double> parse_speed(const std::string& text);
+
+/// Adds the options of the live page, except the one that opens it.
+void add_page_options(CLI::App& command, experiment::ViewOptions& view);
+/// Adds `--open`: whether the address of the page is shown in the browser.
+CLI::Option* add_open_option(CLI::App& command, bool& open);
+
+/// Throws std::runtime_error when a file cannot be written, so that the error occurs before the work.  Creates nothing.
+inline void check_writable(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, error)) throw std::runtime_error(path + ": cannot be written: no such folder");
+  if (fs::is_directory(path, error)) throw std::runtime_error(path + ": cannot be written: it is a folder");
+  if (access(fs::exists(path, error) ? path.c_str() : folder.c_str(), W_OK) != 0)
+    throw std::runtime_error(path + ": cannot be written: not allowed");
+}
 
 }  // namespace tools

@@ -7,7 +7,7 @@
 #include "bridges/base/bus_error.hpp"
 #include "experiment/bug_report/bug_report.hpp"
 #include "tools/shoal/commands/commands.hpp"
-#include "tools/shoal/options/output_file.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 
 namespace tools {
 

@@ -11,13 +11,12 @@
 #include <regex>
 
 #include "bridges/log/event_log.hpp"
-#include "bridges/log/run_info.hpp"
-#include "bridges/log/time_order.hpp"
+#include "bridges/log/record_reader.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/sim_info_t.hpp"
 #include "sim/config/message_text.hpp"
 #include "tools/shoal/commands/commands.hpp"
-#include "tools/shoal/options/output_file.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 #include "tools/shoal/records/log_mcap_command.hpp"
 #include "viewer/images/allan_table.hpp"
 #include "viewer/images/log_image.hpp"

@@ -9,7 +9,6 @@
 
 #include "bridges/log/mcap_conversion.hpp"
 #include "sim/base/log.hpp"
-#include "tools/shoal/options/output_file.hpp"
 #include "tools/shoal/options/shared_options.hpp"
 
 namespace tools {

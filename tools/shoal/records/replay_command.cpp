@@ -10,10 +10,9 @@
 #include "experiment/run/runner.hpp"
 #include "experiment/world_files/world_by_name.hpp"
 #include "sim/base/log.hpp"
-#include "tools/command_line/name_list.hpp"
+#include "tools/command_line/declared_options.hpp"
 #include "tools/shoal/commands/commands.hpp"
-#include "tools/shoal/options/output_file.hpp"
-#include "tools/shoal/options/speed_option.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 
 namespace tools {
 

@@ -9,7 +9,7 @@
 #include "sim/base/log.hpp"
 #include "sim/config/diagnostics.hpp"
 #include "tools/shoal/commands/commands.hpp"
-#include "tools/shoal/options/output_file.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 
 namespace tools {
 

@@ -9,8 +9,7 @@
 
 #include "sim/base/number.hpp"
 #include "sim/world_file/world_config.hpp"
-#include "tools/shoal/reference/param_tables.hpp"
-#include "tools/shoal/reference/program_schema.hpp"
+#include "tools/shoal/reference/reference_pages.hpp"
 
 namespace tools {
 

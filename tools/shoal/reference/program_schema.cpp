@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/shoal/reference/program_schema.hpp"
-
 #include <cmath>
 
-#include "sim/config/yaml_writer.hpp"
+#include "sim/config/config_node.hpp"
 #include "sim/program/find_program.hpp"
+#include "tools/shoal/reference/json_schema.hpp"
 
 namespace tools {
 

@@ -8,13 +8,12 @@
 
 #include "shoal/message_schema.hpp"
 #include "sim/base/text_layout.hpp"
-#include "sim/config/param_table.hpp"
+#include "sim/config/param_info.hpp"
 #include "sim/program/program_declaration.hpp"
 #include "sim/random/noise.hpp"
 #include "sim/world_file/metric_registry.hpp"
 #include "sim/world_file/world_config.hpp"
-#include "tools/shoal/reference/param_tables.hpp"
-#include "tools/shoal/reference/program_schema.hpp"
+#include "tools/shoal/reference/json_schema.hpp"
 
 namespace tools {
 

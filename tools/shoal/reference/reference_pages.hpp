@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "sim/config/param_info.hpp"
+#include "sim/config/param_reader.hpp"
+#include "sim/device/device_registry.hpp"
 
 namespace tools {
 
@@ -21,5 +23,34 @@ std::string describe_text(const std::string& name, std::size_t columns = 1000);
 /// Returns a title and a table of keys, in the form of describe_text().
 std::string describe_keys(const std::string& title, const std::vector<sim::ParamInfo>& params,
                           std::size_t columns = 1000);
+
+/// Returns the keys that a struct reads.
+template <typename Config>
+std::vector<sim::ParamInfo> params_of() {
+  std::vector<sim::ParamInfo> table;
+  sim::ParamReader in(table);
+  Config config;
+  config.read(in);
+  return table;
+}
+
+/// Returns the keys of every device.
+inline std::vector<sim::ParamInfo> common_params() {
+  std::vector<sim::ParamInfo> table;
+  sim::ParamReader in(table);
+  sim::DeviceConfig config;
+  config.read_common(in);
+  return table;
+}
+
+/// Returns the keys of one device type, and of actuators if it is one, in addition to those of every device.
+inline std::vector<sim::ParamInfo> params_of(const sim::DeviceType& type) {
+  std::vector<sim::ParamInfo> table;
+  sim::ParamReader in(table);
+  sim::DeviceConfig config;
+  if (type.is_actuator()) config.read_actuator(in, type);
+  type.make_params()->read(in);
+  return table;
+}
 
 }  // namespace tools

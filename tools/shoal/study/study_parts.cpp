@@ -7,14 +7,14 @@
 #include <iostream>
 #include <thread>
 
-#include "experiment/campaign/outside_program.hpp"
+#include "experiment/campaign/engines.hpp"
 #include "experiment/campaign/study_database.hpp"
 #include "experiment/files/file_replacement.hpp"
 #include "experiment/process/signals.hpp"
 #include "experiment/report/report_page.hpp"
 #include "experiment/study/study_algorithms.hpp"
 #include "experiment/study/study_results.hpp"
-#include "tools/command_line/name_list.hpp"
+#include "tools/command_line/declared_options.hpp"
 #include "tools/shoal/options/shared_options.hpp"
 
 namespace tools {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "sim/base/linear_algebra.hpp"
+#include "sim/base/math.hpp"
 #include "sim/config/message_text.hpp"
 #include "tools/shoal/urdf/shoal_names.hpp"
 

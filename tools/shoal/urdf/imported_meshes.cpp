@@ -13,7 +13,7 @@
 
 #include "sim/config/message_text.hpp"
 #include "tools/shoal/mesh/mesh_import.hpp"
-#include "tools/shoal/urdf/convex_hull.hpp"
+#include "tools/shoal/urdf/mass_of_shapes.hpp"
 #include "tools/shoal/urdf/shoal_names.hpp"
 
 namespace tools {

@@ -69,4 +69,13 @@ enum class NoMass { refused, of_shapes };
 ImportedVehicle vehicle_of(const UrdfRobot& robot, const std::string& file_name, Base base = Base::free,
                            NoMass no_mass = NoMass::refused);
 
+/// Names of the bodies that a joint connects; `parent` may be `world`.
+struct JointEnds {
+  std::string parent, child;
+};
+
+/// Makes a joint of a vehicle file.  R_VJ: rotation of the joint's frame in the vehicle's frame.
+ImportedJoint imported_joint(const UrdfJoint& from, const std::string& name, const JointEnds& ends,
+                             const sim::Matrix3d& R_VJ, std::vector<UrdfNote>& notes);
+
 }  // namespace tools

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/shoal/urdf/urdf_joint_reader.hpp"
-
 #include <spdlog/fmt/fmt.h>
 
 #include "sim/config/message_text.hpp"
+#include "tools/shoal/urdf/urdf_reader.hpp"
 
 namespace tools {
 

@@ -13,8 +13,6 @@
 
 #include "sim/config/message_text.hpp"
 #include "tools/shoal/urdf/urdf_element.hpp"
-#include "tools/shoal/urdf/urdf_joint_reader.hpp"
-#include "tools/shoal/urdf/urdf_shape_reader.hpp"
 #include "tools/shoal/urdf/urdf_tree.hpp"
 
 namespace tools {

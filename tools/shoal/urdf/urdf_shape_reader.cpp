@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/shoal/urdf/urdf_shape_reader.hpp"
-
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "sim/config/message_text.hpp"
+#include "tools/shoal/urdf/urdf_reader.hpp"
 
 namespace tools {
 

@@ -17,7 +17,7 @@
 #include "experiment/run/version.hpp"
 #include "sim/base/log.hpp"
 #include "tools/shoal/commands/commands.hpp"
-#include "tools/shoal/options/output_file.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 #include "viewer/recording/recording_page.hpp"
 
 namespace tools {

@@ -21,7 +21,7 @@
 #include "sim/config/diagnostics.hpp"
 #include "sim/config/message_text.hpp"
 #include "tools/shoal/commands/commands.hpp"
-#include "tools/shoal/options/view_options.hpp"
+#include "tools/shoal/options/shared_options.hpp"
 #include "viewer/resimulate/resimulated_run.hpp"
 #include "viewer/server/bus_view.hpp"
 #include "viewer/server/log_view.hpp"

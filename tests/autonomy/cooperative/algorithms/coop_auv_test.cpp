@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "autonomy/cooperative/filter/own_filter.hpp"
+#include "autonomy/filters/chi_square.hpp"
 #include "tests/autonomy/cooperative/algorithms/conversation.hpp"
 
 namespace {
@@ -25,7 +26,7 @@ TEST(CoopAuvFilter, AddsTheVarianceOfTheSenderToThatOfTheRange) {
 
 TEST(CoopAuvFilter, DoubtsASenderThatContradictsAndStillUsesTheOther) {
   navigation::Setup setup = nav_setup(3, 0, {0, 0}, 2);
-  setup.gate = 10.83;
+  setup.gate = autonomy::chi_square_999_1;
   const auto own = started("coop_auv", setup);
   const auto west = started("naive", nav_setup(3, 1, {-far_m, 0}, 1)),
              south = started("naive", nav_setup(3, 2, {0, -far_m}, 1));

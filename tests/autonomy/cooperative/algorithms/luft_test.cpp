@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <numbers>
 
+#include "autonomy/filters/chi_square.hpp"
 #include "tests/autonomy/cooperative/algorithms/conversation.hpp"
 
 namespace {
@@ -17,7 +18,7 @@ TEST(PairwiseCommunication, KeepsACovarianceWhenFixesOpenThePosition) {
   const auto luft = algorithm_named("luft").make_team();
   for (const int vehicle : {0, 1}) {
     navigation::Setup setup = nav_setup(2, vehicle, {20.0 * vehicle, 0}, 1);
-    setup.gate = 10.83;
+    setup.gate = autonomy::chi_square_999_1;
     luft->start(vehicle, setup);
   }
   Relative seen{.time = nav_second, .other = 1, .range_m = 20, .range_std_m = 0.1, .bearing_std_rad = 0.005};

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "autonomy/cooperative/estimator/estimator_registry.hpp"
+#include "autonomy/filters/chi_square.hpp"
 #include "sim/random/random.hpp"
 
 namespace test {
@@ -121,7 +122,7 @@ inline DiveScore run_dive(const TeamDive& dive, const std::string& algorithm, in
         const double nees = error.dot(estimate.P.inverse() * error);
         score.squares_m2 += error.squaredNorm();
         score.nees += nees;
-        score.inside += nees < 5.991 ? 1 : 0;
+        score.inside += nees < autonomy::chi_square_95_2 ? 1 : 0;
         ++score.samples;
       }
     }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "autonomy/filters/chi_square.hpp"
+
 namespace {
 
 using navigation::DeviceErrors;
@@ -109,7 +111,7 @@ TEST(JointFilter, ClocksOfBothEndsAreInARange) {
 }
 
 TEST(JointFilter, ARangeBeyondTheGateIsRefused) {
-  JointFilter filter(1500, 10.83);
+  JointFilter filter(1500, autonomy::chi_square_999_1);
   const int auv = filter.add(DeviceErrors{}, 0, {0, 0}, 1);
   const Position beacon{{-5e4, 0}, 1e-4 * Matrix2::Identity()};
   EXPECT_EQ(filter.range(auv, beacon, 0, 5e4 + 5, 1), JointFilter::Outcome::refused);  // 25 / 2
@@ -130,7 +132,7 @@ TEST(JointFilter, ADirectionAndADistanceAreAPosition) {
 }
 
 TEST(JointFilter, ASightOfANearOneIsAsGoodAsTheSensorHoweverUnsureThePositionIs) {
-  JointFilter filter(1500, 10.83);
+  JointFilter filter(1500, autonomy::chi_square_999_1);
   const int rover = filter.add(DeviceErrors{}, 0, {2, 1}, 5);
   navigation::Relative seen;
   seen.range_m = 2;
@@ -166,7 +168,7 @@ TEST(JointFilter, ABearingByAnotherVehicleSaysNothingOfTheOwnHeading) {
 }
 
 TEST(JointFilter, ASightOfAnotherPlaceIsRefusedHoweverOftenItComes) {
-  JointFilter filter(1500, 10.83);
+  JointFilter filter(1500, autonomy::chi_square_999_1);
   filter.add(DeviceErrors{}, 0, {0, 0}, 0.1);
   const Position other{{20, 0}, 1e-4 * Matrix2::Identity()};
   navigation::Relative seen;
@@ -184,7 +186,7 @@ TEST(JointFilter, ASightOfAnotherPlaceIsRefusedHoweverOftenItComes) {
 }
 
 TEST(JointFilter, FiveRefusedFixesInARowOpenThePosition) {
-  JointFilter filter(1500, 10.83);
+  JointFilter filter(1500, autonomy::chi_square_999_1);
   const int auv = filter.add(DeviceErrors{}, 0, {0, 0}, 1);
   for (int i = 0; i < 4; ++i) EXPECT_EQ(filter.fix(auv, {100, 0}, 1), JointFilter::Outcome::refused);
   EXPECT_EQ(filter.fix(auv, {100, 0}, 1), JointFilter::Outcome::used);

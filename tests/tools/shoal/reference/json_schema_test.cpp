@@ -16,7 +16,7 @@
 #include "sim/motion/motion.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/project_paths.hpp"
-#include "tools/shoal/reference/param_tables.hpp"
+#include "tools/shoal/reference/reference_pages.hpp"
 
 namespace {
 

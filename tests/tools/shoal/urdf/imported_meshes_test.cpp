@@ -9,7 +9,7 @@
 
 #include "tests/scratch_folder.hpp"
 #include "tests/tools/shoal/urdf/urdf_texts.hpp"
-#include "tools/shoal/urdf/convex_hull.hpp"
+#include "tools/shoal/urdf/mass_of_shapes.hpp"
 
 namespace {
 

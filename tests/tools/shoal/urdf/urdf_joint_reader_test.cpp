@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/shoal/urdf/urdf_joint_reader.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/tools/shoal/urdf/urdf_texts.hpp"
 #include "tools/shoal/urdf/imported_meshes.hpp"
+#include "tools/shoal/urdf/urdf_reader.hpp"
 
 namespace {
 

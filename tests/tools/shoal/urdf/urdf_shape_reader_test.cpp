@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What other readers of URDF overlook: it gets a note, and the robot is imported.
-#include "tools/shoal/urdf/urdf_shape_reader.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +8,7 @@
 #include "tests/scratch_folder.hpp"
 #include "tests/tools/shoal/urdf/urdf_texts.hpp"
 #include "tools/shoal/urdf/imported_meshes.hpp"
+#include "tools/shoal/urdf/urdf_reader.hpp"
 
 namespace {
 
