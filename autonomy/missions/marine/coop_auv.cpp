@@ -10,10 +10,8 @@ namespace autonomy {
 
 namespace {
 
-// Noise of a velocity that is not over ground: a current is unknown, an old one has changed.
-constexpr double through_water_mpsprtHz = 0.3;
+/// Noise of an old velocity, which has changed.
 constexpr double coasting_mpsprtHz = 0.5;
-constexpr double pressure_std_m = 0.1;
 /// Time without a velocity, after which it extrapolates the last one.
 constexpr double coast_after_s = 1;
 /// Correlation time of the error of an unknown heading.
@@ -79,7 +77,7 @@ void CoopAuv::receive(const shoal::dvl_t& dvl) {
   const auto velocity = velocity_of(dvl);
   if (!velocity) return;
   v_B_ = velocity->v_S;
-  velocity_noise_mpsprtHz_ = velocity->over_ground ? 0 : through_water_mpsprtHz;
+  velocity_noise_mpsprtHz_ = velocity->noise_mpsprtHz();
   velocity_utime_ = dvl.utime;
   if (!filter_ && params_.start_W && attitude_.is_known()) start(dvl.utime, *params_.start_W, params_.start_std_m);
   predict(dvl.utime);
@@ -187,9 +185,7 @@ void CoopAuv::use_range(const shoal::acoustic_received_t& packet, const Acoustic
   const Eigen::Vector3d modem_W = attitude_.q_WB() * params_.modem_B;
   range.p_WS.head<2>() = position_at(beacon, packet.sent_utime) - modem_W.head<2>();
   range.p_WS.z() = -beacon.depth_m;
-  const double covariance_m2 = beacon.correlation * beacon.east_std_m * beacon.north_std_m;
-  range.beacon_covariance << beacon.east_std_m * beacon.east_std_m, covariance_m2, covariance_m2,
-      beacon.north_std_m * beacon.north_std_m;
+  range.beacon_covariance = covariance_of(beacon);
   range.own_z_m = modem_W.z() - depth_m_;
   ++(filter_->update_range(range) ? counts_.ranges : counts_.refused);
 }
@@ -222,15 +218,14 @@ shoal::helm_command_t CoopAuv::helm() {
 }
 
 double CoopAuv::yaw_by(const MarineEkf& filter) const {
-  return sim::wrap_angle(sim::yaw_of(attitude_.q_WB().toRotationMatrix()) + filter.heading_bias_rad());
+  return sim::wrap_angle(attitude_.yaw_rad() + filter.heading_bias_rad());
 }
 
 shoal::estimate_t CoopAuv::estimate(const MarineEkf& filter) const {
   const std::int64_t utime = clock_.time();
   shoal::estimate_t estimate =
       estimate_message(utime, filter.position_at(utime), filter.velocity(), filter.position_covariance());
-  estimate.position_m[2] = -depth_m_;
-  estimate.covariance_m2[8] = pressure_std_m * pressure_std_m;
+  set_depth(estimate, depth_m_);
   estimate.velocity_mps[2] = (attitude_.q_WB() * v_B_).z();
   estimate.yaw_rad = yaw_by(filter);
   estimate.clock_error_s = params_.filter.states > 4 ? filter.range_bias_m() / params_.sound_speed_mps : unknown;
