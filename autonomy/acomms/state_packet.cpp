@@ -64,6 +64,13 @@ Motion motion_of(const AcousticState& state) {
   return {state.utime, {state.east_m, state.north_m}, turned({state.speed_mps, 0}, state.course_rad)};
 }
 
+Eigen::Matrix2d covariance_of(const AcousticState& state) {
+  const double across_m2 = state.correlation * state.east_std_m * state.north_std_m;
+  Eigen::Matrix2d P;
+  P << squared(state.east_std_m), across_m2, across_m2, squared(state.north_std_m);
+  return P;
+}
+
 shoal::estimate_t estimate_message(std::int64_t utime, const Vector2d& p_W, const Vector2d& v_W,
                                    const Eigen::Matrix2d& P) {
   shoal::estimate_t estimate{};
@@ -74,6 +81,12 @@ shoal::estimate_t estimate_message(std::int64_t utime, const Vector2d& p_W, cons
     for (int j = 0; j < 2; ++j) estimate.covariance_m2[3 * i + j] = P(i, j);
   }
   return estimate;
+}
+
+void set_depth(shoal::estimate_t& estimate, double depth_m) {
+  constexpr double pressure_std_m = 0.1;
+  estimate.position_m[2] = -depth_m;
+  estimate.covariance_m2[8] = squared(pressure_std_m);
 }
 
 AcousticState state_of(const shoal::estimate_t& estimate, int sender) {

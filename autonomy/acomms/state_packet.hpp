@@ -46,10 +46,14 @@ inline constexpr double max_travel_s = 60;
 Vector2d position_at(const AcousticState& state, std::int64_t utime);
 
 Motion motion_of(const AcousticState& state);
+/// Returns the covariance of the position, m^2; a correlation of 1 or -1 makes it singular.
+Eigen::Matrix2d covariance_of(const AcousticState& state);
 
 /// Returns the message of a horizontal position, with its velocity and its covariance; all else in it is 0.
 shoal::estimate_t estimate_message(std::int64_t utime, const Vector2d& p_W, const Vector2d& v_W,
                                    const Eigen::Matrix2d& P);
+/// Adds the depth that was measured by pressure, with its error.
+void set_depth(shoal::estimate_t& estimate, double depth_m);
 /// Returns the state that a vehicle with this estimate and this number reports; above the surface its depth is 0.
 AcousticState state_of(const shoal::estimate_t& estimate, int sender);
 

@@ -5,7 +5,7 @@
 
 #include "autonomy/cooperative/estimator/estimator_registry.hpp"
 #include "autonomy/cooperative/filter/own_filter.hpp"
-#include "autonomy/filters/marine_ekf.hpp"
+#include "autonomy/filters/range_aided_ekf.hpp"
 
 namespace navigation {
 
@@ -15,7 +15,8 @@ using autonomy::MarineEkf;
 
 /// Filter of the program `coop_auv` as a plug-in: naive, but it doubts a beacon whose ranges contradict, and finds the
 /// error of the own clock behind contradictions of several beacons.  Slow errors of heading are a random walk of the
-/// bias with the same initial growth, and those of fixes are not modeled.
+/// bias with the same initial growth, and those of fixes are not modeled.  autonomy::CoopAuv says what differs in front
+/// of the filter.
 class CoopAuvFilter final : public EstimatorOf<CoopAuvFilter> {
  public:
   static constexpr const char* meaning =
@@ -24,17 +25,12 @@ class CoopAuvFilter final : public EstimatorOf<CoopAuvFilter> {
   void start(const Setup& setup) override {
     need_bytes(setup, "coop_auv", position_bytes);
     setup_ = setup;
-    const MarineEkf::Params params = params_of(setup);
-    cooperative_.emplace(setup.time, setup.position_W, setup.position_std_m, params);
-    without_ranges_ = cooperative_;
+    filter_.emplace(setup.time, setup.position_W, setup.position_std_m, params_of(setup));
   }
   void predict(Time time, const Vector2& v_W, const Matrix2& q) override {
-    const double noise_mpsprtHz = std::sqrt(0.5 * q.trace());
-    for (auto* filter : {&cooperative_, &without_ranges_}) (*filter)->predict(time, v_W, noise_mpsprtHz);
+    filter_->predict(time, v_W, std::sqrt(0.5 * q.trace()));
   }
-  void fix(Time time, const Vector2& p_W, double std_m) override {
-    for (auto* filter : {&cooperative_, &without_ranges_}) (*filter)->update_position(time, p_W, std_m);
-  }
+  void fix(Time time, const Vector2& p_W, double std_m) override { filter_->update_position(time, p_W, std_m); }
   void on_range(const ReceivedRange& received) override {
     const auto sender = position_in(received.payload);
     if (!sender) return;
@@ -47,19 +43,20 @@ class CoopAuvFilter final : public EstimatorOf<CoopAuvFilter> {
     range.p_WS << sender->p_W, received.sender_z_m;
     range.beacon_covariance = sender->P;
     range.own_z_m = received.own_z_m;
-    cooperative_->update_range(range, &*without_ranges_);
+    filter_->update_range(range);
   }
   Bytes make_payload(Time time, std::size_t) override {
     const Estimate estimate = now(time);
     return payload_of({estimate.p_W, estimate.P});
   }
   Estimate now(Time time) const override {
+    const MarineEkf& filter = filter_->with_ranges();
     Estimate estimate;
-    estimate.p_W = cooperative_->position_at(time);
-    estimate.P = cooperative_->position_covariance();
-    estimate.v_W = cooperative_->velocity();
-    estimate.heading_bias_rad = cooperative_->heading_bias_rad();
-    estimate.clock_error_s = cooperative_->range_bias_m() / setup_.sound_speed_mps;
+    estimate.p_W = filter.position_at(time);
+    estimate.P = filter.position_covariance();
+    estimate.v_W = filter.velocity();
+    estimate.heading_bias_rad = filter.heading_bias_rad();
+    estimate.clock_error_s = filter.range_bias_m() / setup_.sound_speed_mps;
     return estimate;
   }
 
@@ -86,7 +83,7 @@ class CoopAuvFilter final : public EstimatorOf<CoopAuvFilter> {
   }
 
   Setup setup_;
-  std::optional<MarineEkf> cooperative_, without_ranges_;
+  std::optional<autonomy::RangeAidedEkf> filter_;
 };
 
 SHOAL_ESTIMATOR("coop_auv", CoopAuvFilter);

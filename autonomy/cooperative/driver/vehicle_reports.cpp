@@ -16,11 +16,8 @@ namespace {
 
 /// After a longer time without velocities the vehicle may have stopped or gone on.
 constexpr double max_silence_s = autonomy::ReportClock::max_gap_s;
-/// White noise of the velocity without bottom track, m^2/s: the current is unknown.
-constexpr double through_water_density = 0.09;
 /// A transmission that began later or earlier than planned is not that for which the payload was time.
 constexpr double max_late_s = 0.3;
-constexpr double pressure_std_m = 0.1;
 /// An older relative measurement is not sent.
 constexpr double max_relative_age_s = 5;
 /// A relative measurement by a clock that is further ahead of the own one is not used.
@@ -88,8 +85,8 @@ std::vector<NavEvent> VehicleReports::receive(const shoal::dvl_t& dvl) {
   if (!setup_) return {};
   // White errors of velocity and heading, as densities.
   const double fom_mps = std::isfinite(dvl.fom_mps) ? dvl.fom_mps : 0;
-  double density = own.velocity_share * fom_mps * fom_mps * dt_s + own.velocity_density;
-  if (!velocity->over_ground) density += through_water_density;
+  const double density = own.velocity_share * fom_mps * fom_mps * dt_s + own.velocity_density +
+                         autonomy::squared(velocity->noise_mpsprtHz());
   const Vector2 left_W(-v_W.y(), v_W.x());
   const Matrix2 q = density * Matrix2::Identity() +
                     own.heading_white_rad * own.heading_white_rad * dt_s * (left_W * left_W.transpose());
@@ -260,10 +257,9 @@ NavFrame VehicleReports::frame(Time time, Bytes payload) const {
 shoal::estimate_t VehicleReports::message(const Estimate& estimate) const {
   const Vector2 p_W = estimate.p_W - lever_W(own_vehicle().modem->X_BS.translation()).head<2>();
   shoal::estimate_t message = autonomy::estimate_message(clock_.time(), p_W, estimate.v_W, estimate.P);
-  message.position_m[2] = -depth_m_;
-  message.covariance_m2[8] = own_vehicle().pressure ? pressure_std_m * pressure_std_m : 1;
-  const double measured_rad =
-      attitude_.is_known() ? sim::yaw_of(attitude_.q_WB().toRotationMatrix()) : std::atan2(v_W_.y(), v_W_.x());
+  autonomy::set_depth(message, depth_m_);
+  if (!own_vehicle().pressure) message.covariance_m2[8] = 1;  // it floats
+  const double measured_rad = attitude_.is_known() ? attitude_.yaw_rad() : std::atan2(v_W_.y(), v_W_.x());
   message.yaw_rad = std::remainder(measured_rad + estimate.heading_bias_rad, 2 * std::numbers::pi);
   message.clock_error_s = estimate.clock_error_s;
   return message;

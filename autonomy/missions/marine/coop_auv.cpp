@@ -10,10 +10,8 @@ namespace autonomy {
 
 namespace {
 
-// Noise of a velocity that is not over ground: a current is unknown, an old one has changed.
-constexpr double through_water_mpsprtHz = 0.3;
+/// Noise of an old velocity, which has changed.
 constexpr double coasting_mpsprtHz = 0.5;
-constexpr double pressure_std_m = 0.1;
 /// Time without a velocity, after which it extrapolates the last one.
 constexpr double coast_after_s = 1;
 /// Correlation time of the error of an unknown heading.
@@ -56,25 +54,22 @@ void CoopAuv::set_clock(std::int64_t by_us) {
   for (auto* time : {&velocity_utime_, &fix_utime_})
     if (*time) **time += by_us;
   // The true part of it is unknown, so the next range has to determine the clock error.
-  for (auto* filter : {&cooperative_, &dead_reckoning_})
-    if (*filter)
-      (*filter)->shift_clock(by_us, params_.sound_speed_mps * seconds(by_us),
-                             params_.sound_speed_mps * ReportClock::late_s);
+  if (filter_)
+    filter_->shift_clock(by_us, params_.sound_speed_mps * seconds(by_us),
+                         params_.sound_speed_mps * ReportClock::late_s);
 }
 
 void CoopAuv::start(std::int64_t utime, const Vector2d& p_W, double std_m) {
-  cooperative_.emplace(utime, p_W, std_m, params_.filter);
-  dead_reckoning_.emplace(utime, p_W, std_m, params_.filter);
+  filter_.emplace(utime, p_W, std_m, params_.filter);
   phases_.begin(utime);
 }
 
 void CoopAuv::predict(std::int64_t utime) {
-  if (!attitude_.is_known()) return;
+  if (!filter_ || !attitude_.is_known()) return;
   const Eigen::Vector3d v_W = attitude_.q_WB() * v_B_;
   double noise_mpsprtHz = velocity_noise_mpsprtHz_;
   if (attitude_.is_lost(utime)) noise_mpsprtHz = std::max(noise_mpsprtHz, v_B_.norm() * std::sqrt(lost_heading_s));
-  for (auto* filter : {&cooperative_, &dead_reckoning_})
-    if (*filter) (*filter)->predict(utime, v_W.head<2>(), noise_mpsprtHz);
+  filter_->predict(utime, v_W.head<2>(), noise_mpsprtHz);
 }
 
 void CoopAuv::receive(const shoal::dvl_t& dvl) {
@@ -82,9 +77,9 @@ void CoopAuv::receive(const shoal::dvl_t& dvl) {
   const auto velocity = velocity_of(dvl);
   if (!velocity) return;
   v_B_ = velocity->v_S;
-  velocity_noise_mpsprtHz_ = velocity->over_ground ? 0 : through_water_mpsprtHz;
+  velocity_noise_mpsprtHz_ = velocity->noise_mpsprtHz();
   velocity_utime_ = dvl.utime;
-  if (!cooperative_ && params_.start_W && attitude_.is_known()) start(dvl.utime, *params_.start_W, params_.start_std_m);
+  if (!filter_ && params_.start_W && attitude_.is_known()) start(dvl.utime, *params_.start_W, params_.start_std_m);
   predict(dvl.utime);
 }
 
@@ -107,14 +102,13 @@ void CoopAuv::receive(const shoal::gps_data_t& fix) {
   note_time(fix.utime);
   const Vector2d p_W = Vector2d(fix.xyz_pos[0], fix.xyz_pos[1]) - (attitude_.q_WB() * params_.gps_B).head<2>();
   if (fix.gps_lock < 1 || !p_W.allFinite() || !(fix.horizontal_accuracy > 0)) return;
-  if (!cooperative_) {
+  if (!filter_) {
     if (!attitude_.is_known()) return;
     start(fix.utime, p_W, fix.horizontal_accuracy);
   } else if (fix_utime_ && seconds(fix.utime - *fix_utime_) < params_.fix_period_s) {
     return;
   } else {
-    cooperative_->update_position(fix.utime, p_W, fix.horizontal_accuracy);
-    dead_reckoning_->update_position(fix.utime, p_W, fix.horizontal_accuracy);
+    filter_->update_position(fix.utime, p_W, fix.horizontal_accuracy);
   }
   fix_utime_ = fix.utime;
 }
@@ -136,7 +130,7 @@ void CoopAuv::receive(const shoal::acoustic_received_t& packet) {
     return;
   }
   behavior_->receive_state(packet.source, motion_of(*state));
-  if (cooperative_ && params_.use_ranges) use_range(packet, *state);
+  if (filter_ && params_.use_ranges) use_range(packet, *state);
 }
 
 Motion CoopAuv::motion_at(const MarineEkf& filter, std::int64_t utime) const {
@@ -147,7 +141,7 @@ Motion CoopAuv::motion_at(const MarineEkf& filter, std::int64_t utime) const {
 
 void CoopAuv::receive(const shoal::multibeam_t& ping) {
   note_time(ping.utime);
-  if (!cooperative_ || ping.count < 2) return;
+  if (!filter_ || ping.count < 2) return;
   const double step_rad = ping.angles_rad[1] - ping.angles_rad[0];
   behavior_->receive_scan({scan_of(ping), ping.angles_rad[0], step_rad}, motion_at(steered_by(), ping.utime));
 }
@@ -191,13 +185,9 @@ void CoopAuv::use_range(const shoal::acoustic_received_t& packet, const Acoustic
   const Eigen::Vector3d modem_W = attitude_.q_WB() * params_.modem_B;
   range.p_WS.head<2>() = position_at(beacon, packet.sent_utime) - modem_W.head<2>();
   range.p_WS.z() = -beacon.depth_m;
-  const double covariance_m2 = beacon.correlation * beacon.east_std_m * beacon.north_std_m;
-  range.beacon_covariance << beacon.east_std_m * beacon.east_std_m, covariance_m2, covariance_m2,
-      beacon.north_std_m * beacon.north_std_m;
+  range.beacon_covariance = covariance_of(beacon);
   range.own_z_m = modem_W.z() - depth_m_;
-  const MarineEkf::Outcome outcome = cooperative_->update_range(range, &*dead_reckoning_);
-  const bool used = outcome == MarineEkf::Outcome::accepted || outcome == MarineEkf::Outcome::inflated;
-  ++(used ? counts_.ranges : counts_.refused);
+  ++(filter_->update_range(range) ? counts_.ranges : counts_.refused);
 }
 
 CoopAuv::Decision CoopAuv::step() {
@@ -210,9 +200,9 @@ CoopAuv::Decision CoopAuv::step() {
     predict(utime);
   }
   decision.helm = helm();
-  if (!cooperative_ || clock_.is_silent()) return decision;  // no new data
-  decision.estimate = estimate(*cooperative_);
-  decision.dead_reckoning = estimate(*dead_reckoning_);
+  if (!filter_ || clock_.is_silent()) return decision;  // no new data
+  decision.estimate = estimate(*cooperative());
+  decision.dead_reckoning = estimate(*dead_reckoning());
   if (access_.take_turn(utime)) decision.send = state_frame(*decision.estimate);
   return decision;
 }
@@ -228,15 +218,14 @@ shoal::helm_command_t CoopAuv::helm() {
 }
 
 double CoopAuv::yaw_by(const MarineEkf& filter) const {
-  return sim::wrap_angle(sim::yaw_of(attitude_.q_WB().toRotationMatrix()) + filter.heading_bias_rad());
+  return sim::wrap_angle(attitude_.yaw_rad() + filter.heading_bias_rad());
 }
 
 shoal::estimate_t CoopAuv::estimate(const MarineEkf& filter) const {
   const std::int64_t utime = clock_.time();
   shoal::estimate_t estimate =
       estimate_message(utime, filter.position_at(utime), filter.velocity(), filter.position_covariance());
-  estimate.position_m[2] = -depth_m_;
-  estimate.covariance_m2[8] = pressure_std_m * pressure_std_m;
+  set_depth(estimate, depth_m_);
   estimate.velocity_mps[2] = (attitude_.q_WB() * v_B_).z();
   estimate.yaw_rad = yaw_by(filter);
   estimate.clock_error_s = params_.filter.states > 4 ? filter.range_bias_m() / params_.sound_speed_mps : unknown;

@@ -12,7 +12,7 @@
 #include "autonomy/acomms/state_packet.hpp"
 #include "autonomy/behaviors/cloned.hpp"
 #include "autonomy/behaviors/helm_behavior.hpp"
-#include "autonomy/filters/marine_ekf.hpp"
+#include "autonomy/filters/range_aided_ekf.hpp"
 #include "autonomy/missions/marine/mission_phases.hpp"
 #include "autonomy/missions/marine/motion_reports.hpp"
 #include "autonomy/missions/marine/report_clock.hpp"
@@ -33,6 +33,19 @@ namespace autonomy {
 /// by acoustic modem.  In addition it keeps an estimate by dead reckoning only.  It waits at the surface for GPS,
 /// dives, follows its behavior, and surfaces.  A pure function of its reports in their order; its time is that of
 /// their stamps, by the vehicle's own clock.
+///
+/// Its filter is that of the algorithm `coop_auv` of shoal-nav (RangeAidedEkf).  It is not itself a
+/// navigation::Estimator behind navigation::VehicleReports and Navigator, since what goes into the filter differs:
+///
+///   - It knows its arguments only: one speed of sound, one error of ranges, two lever arms, the parameters of the
+///     filter.  VehicleReports takes all that from the vehicle files and the sound profile of the world.
+///   - Ranges are to the states that any vehicle broadcasts, with their velocities; those of an Estimator are to the
+///     payloads of its team, by the clocks of its members.
+///   - A late range updates the present state (MarineEkf); Navigator keeps 20 s of events and an older estimator to
+///     repeat them, which every copy for a rewind would contain.
+///   - A clock that was set restarts the clock states; VehicleReports hides it from an Estimator.
+///   - A lost heading and a DVL that is silent for 1 s add noise, and fixes have a period.  VehicleReports only knows
+///     silence of more than 5 s.
 class CoopAuv {
  public:
   struct Params {
@@ -93,8 +106,8 @@ class CoopAuv {
   Decision step();
 
   /// Null before the position is known.
-  const MarineEkf* cooperative() const { return cooperative_ ? &*cooperative_ : nullptr; }
-  const MarineEkf* dead_reckoning() const { return dead_reckoning_ ? &*dead_reckoning_ : nullptr; }
+  const MarineEkf* cooperative() const { return filter_ ? &filter_->with_ranges() : nullptr; }
+  const MarineEkf* dead_reckoning() const { return filter_ ? &filter_->without_ranges() : nullptr; }
   Phase phase() const { return phases_.phase(); }
   const Counts& counts() const { return counts_; }
 
@@ -104,7 +117,7 @@ class CoopAuv {
   void start(std::int64_t utime, const Vector2d& p_W, double std_m);
   void predict(std::int64_t utime);
   Motion motion_at(const MarineEkf& filter, std::int64_t utime) const;
-  const MarineEkf& steered_by() const { return params_.steer_by_dead_reckoning ? *dead_reckoning_ : *cooperative_; }
+  const MarineEkf& steered_by() const { return params_.steer_by_dead_reckoning ? *dead_reckoning() : *cooperative(); }
   void execute(const AcousticOrder& order);
   OrderRefusal refusal_of(const AcousticOrder& order) const;
   void use_range(const shoal::acoustic_received_t& packet, const AcousticState& beacon);
@@ -121,8 +134,7 @@ class CoopAuv {
   int refused_order_ = 0;  ///< number of the last one refused, when later than that
   OrderRefusal refusal_ = OrderRefusal::none;
   double desired_depth_m_ = 0;  ///< when under way
-  std::optional<MarineEkf> cooperative_;
-  std::optional<MarineEkf> dead_reckoning_;
+  std::optional<RangeAidedEkf> filter_;
 
   ReportClock clock_;
   AttitudeReports attitude_;

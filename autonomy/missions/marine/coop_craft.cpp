@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/base/math.hpp"
-
 namespace autonomy {
 
 CoopCraft::CoopCraft(const Params& params, std::unique_ptr<HelmBehavior> behavior)
@@ -45,8 +43,7 @@ Motion CoopCraft::motion_at(std::int64_t utime) const {
   Motion motion = *motion_;
   motion.p_W += motion.v_W * seconds(utime - motion.utime);
   motion.utime = utime;
-  if (attitude_.is_known() && !attitude_.is_lost(utime))
-    motion.yaw_rad = sim::yaw_of(attitude_.q_WB().toRotationMatrix());
+  if (attitude_.is_known() && !attitude_.is_lost(utime)) motion.yaw_rad = attitude_.yaw_rad();
   return motion;
 }
 

@@ -20,15 +20,12 @@ std::string decimal(double number) {
 }
 
 shoal::estimate_t estimate_of(const AcousticState& state) {
-  constexpr double depth_std_m = 0.1;
   const Motion motion = motion_of(state);
   // A covariance with a correlation of 1 is invalid.
-  const double across_m2 = std::clamp(state.correlation, -0.99, 0.99) * state.east_std_m * state.north_std_m;
-  Eigen::Matrix2d P;
-  P << squared(state.east_std_m), across_m2, across_m2, squared(state.north_std_m);
-  shoal::estimate_t estimate = estimate_message(state.utime, motion.p_W, motion.v_W, P);
-  estimate.position_m[2] = -state.depth_m;
-  estimate.covariance_m2[8] = depth_std_m * depth_std_m;
+  AcousticState uncertain = state;
+  uncertain.correlation = std::clamp(state.correlation, -0.99, 0.99);
+  shoal::estimate_t estimate = estimate_message(state.utime, motion.p_W, motion.v_W, covariance_of(uncertain));
+  set_depth(estimate, state.depth_m);
   estimate.yaw_rad = state.course_rad;
   estimate.clock_error_s = unknown;
   return estimate;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "autonomy/filters/pose2.hpp"
+#include "sim/base/math.hpp"
 
 namespace autonomy {
 
@@ -33,6 +34,10 @@ void AttitudeReports::receive(std::int64_t time, const shoal::compass_t& compass
 void AttitudeReports::shift(std::int64_t by_us) {
   for (auto* time : {&ahrs_time_, &time_})
     if (*time) **time += by_us;
+}
+
+double AttitudeReports::yaw_rad() const {
+  return sim::yaw_of(q_WB().toRotationMatrix());
 }
 
 bool AttitudeReports::is_lost(std::int64_t time) const {

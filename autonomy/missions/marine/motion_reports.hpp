@@ -15,6 +15,9 @@ namespace autonomy {
 struct DvlVelocity {
   Eigen::Vector3d v_S = Eigen::Vector3d::Zero();
   bool over_ground = false;  ///< otherwise through the water
+
+  /// Returns the noise of it as a velocity over ground, in addition to that of bottom track: the current is unknown.
+  double noise_mpsprtHz() const { return over_ground ? 0 : 0.3; }
 };
 /// Returns the velocity over ground with bottom lock, else that through the water; nothing with neither lock.
 std::optional<DvlVelocity> velocity_of(const shoal::dvl_t& dvl);
@@ -35,6 +38,8 @@ class AttitudeReports {
   bool is_known() const { return q_WB_.has_value(); }
   /// The last attitude; no rotation before the first report.
   Eigen::Quaterniond q_WB() const { return q_WB_.value_or(Eigen::Quaterniond::Identity()); }
+  /// Measured heading, counter-clockwise from east.
+  double yaw_rad() const;
   bool is_lost(std::int64_t time) const;
 
  private:

@@ -29,7 +29,6 @@ constexpr double beam_margin_m = 0.5;
 constexpr double dive_current_std_mps = 0.1;
 /// Beams used of a ping; their errors by the pose are the same, so that all of them would add little.
 constexpr int beams_of_ping = 9;
-constexpr double depth_std_m = 0.1;
 
 RouteBehavior route_of(const std::vector<Vector2d>& points_W, double speed_mps, double reached_m) {
   RouteBehavior::Params params;
@@ -230,8 +229,7 @@ shoal::estimate_t Ranger::estimate() const {
   const Vector2d v_W = turned({speed_mps_, 0}, yaw_rad) + filter_->current_W();
   shoal::estimate_t estimate =
       estimate_message(predicted_utime_.value_or(utime_), filter_->p_W(), v_W, filter_->position_covariance());
-  estimate.position_m[2] = -depth_m_;
-  estimate.covariance_m2[8] = squared(depth_std_m);
+  set_depth(estimate, depth_m_);
   estimate.yaw_rad = yaw_rad;
   estimate.clock_error_s = unknown;
   return estimate;

@@ -5,7 +5,6 @@
 
 #include <limits>
 
-#include "sim/base/math.hpp"
 #include "tests/autonomy/missions/marine/voyage.hpp"
 
 namespace {
@@ -22,10 +21,6 @@ shoal::ins_t attitude_with(double yaw_rad) {
   return attitude;
 }
 
-double yaw_of(const AttitudeReports& attitude) {
-  return sim::yaw_of(attitude.q_WB().toRotationMatrix());
-}
-
 TEST(VelocityOf, ADvlIsOverGroundIfItCanBeAndElseThroughTheWater) {
   shoal::dvl_t dvl{};
   dvl.velocity_mps[0] = 2;
@@ -35,9 +30,11 @@ TEST(VelocityOf, ADvlIsOverGroundIfItCanBeAndElseThroughTheWater) {
   ASSERT_TRUE(autonomy::velocity_of(dvl));
   EXPECT_EQ(autonomy::velocity_of(dvl)->v_S.x(), 1);
   EXPECT_FALSE(autonomy::velocity_of(dvl)->over_ground);
+  EXPECT_EQ(autonomy::velocity_of(dvl)->noise_mpsprtHz(), 0.3);
   dvl.bottom_lock = 1;
   EXPECT_EQ(autonomy::velocity_of(dvl)->v_S.x(), 2);
   EXPECT_TRUE(autonomy::velocity_of(dvl)->over_ground);
+  EXPECT_EQ(autonomy::velocity_of(dvl)->noise_mpsprtHz(), 0);
   dvl.velocity_mps[1] = not_a_number;
   EXPECT_EQ(autonomy::velocity_of(dvl)->v_S.x(), 1);
 }
@@ -46,18 +43,18 @@ TEST(AttitudeReports, OfACompassCountWhileTheAhrsIsSilent) {
   AttitudeReports attitude;
   EXPECT_FALSE(attitude.is_known());
   attitude.receive(0, compass_at(0, 0.1));
-  EXPECT_NEAR(yaw_of(attitude), 0.1, 1e-12);
+  EXPECT_NEAR(attitude.yaw_rad(), 0.1, 1e-12);
   attitude.receive(second, attitude_with(0.2));
   attitude.receive(2 * second, compass_at(0, 0.1));
-  EXPECT_NEAR(yaw_of(attitude), 0.2, 1e-12);
+  EXPECT_NEAR(attitude.yaw_rad(), 0.2, 1e-12);
   attitude.receive(3 * second, compass_at(0, 0.3));
-  EXPECT_NEAR(yaw_of(attitude), 0.3, 1e-12);
+  EXPECT_NEAR(attitude.yaw_rad(), 0.3, 1e-12);
 }
 
 TEST(AttitudeReports, AreThoseOfTheVehicleHoweverTheAhrsIsMounted) {
   AttitudeReports attitude;
   attitude.receive(0, attitude_with(0.5), Eigen::Quaterniond(Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ())));
-  EXPECT_NEAR(yaw_of(attitude), 0.3, 1e-12);
+  EXPECT_NEAR(attitude.yaw_rad(), 0.3, 1e-12);
 }
 
 TEST(AttitudeReports, AreLostWhenBothDevicesAreSilent) {
