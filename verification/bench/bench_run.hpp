@@ -9,6 +9,10 @@
 #include "sim/world_file/load_world.hpp"
 #include "verification/bench/bench_scene.hpp"
 
+namespace sim {
+struct StageTimes;
+}
+
 namespace verification {
 
 /// Running bench scene: a world and the programs of its vehicles in one process, all messages on the in-process

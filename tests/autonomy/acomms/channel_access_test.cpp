@@ -6,8 +6,11 @@
 #include <stdexcept>
 #include <vector>
 
+#include "tests/autonomy/second.hpp"
+
 namespace {
 
+using autonomy::RandomAccess;
 using autonomy::Tdma;
 using test::second;
 
@@ -103,11 +106,6 @@ TEST(Tdma, SlotsAreChecked) {
   EXPECT_THROW(slot(0, 1, 5, 5), std::invalid_argument);
   EXPECT_THROW(slot(0, 1, 0, 0), std::invalid_argument);
 }
-
-using autonomy::RandomAccess;
-using test::second;
-
-constexpr std::int64_t epoch = 1'767'225'600 * second;  // a multiple of 20 s
 
 TEST(RandomAccess, ScattersAboutItsMean) {
   RandomAccess access(10, 0.5, 1, "auv");

@@ -63,11 +63,6 @@ using shoal::pressure_t;
 using test::marine_world;
 
 /// With gravity, which the box follows: 0.5 g t^2 = 0.5 mm in the first step.
-std::string with_gravity(std::string yaml) {
-  const std::string none = "gravity_mps2: 0";
-  return yaml.replace(yaml.find(none), none.size(), "gravity_mps2: 9.80665");
-}
-
 TEST(Pressure, DepthIsOffByTheDensityItAssumes) {
   const auto yaml = with_gravity(marine_world("type: pressure, assumed_density_kgpm3: 1000", "[0, 0, -100]", "[]", "",
                                               "{water: {surface_m: 0, density_kgpm3: 1025}}"));

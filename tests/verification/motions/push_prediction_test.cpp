@@ -97,13 +97,6 @@ TEST_F(PushPredictionOfMotions, FindsMostFallsOfPushesThatItHasNotTried) {
   EXPECT_GE(detection.precision(), 0.75);
 }
 
-class OfTheDog : public testing::Test {
- protected:
-  const sim::VehicleConfig dog = sim::load_vehicle(test_support::source_path("vehicles/ers7.yaml"), {});
-  const std::vector<sim::MotionPose> poses =
-      sim::load_motion(test_support::source_path("vehicles/motions/ers7/stretch.yaml")).poses;
-};
-
 using RandomMotion = OfTheDog;
 
 TEST_F(RandomMotion, StartsInAPoseAndKeepsRangesAndSpeeds) {
