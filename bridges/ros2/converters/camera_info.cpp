@@ -31,7 +31,7 @@ double baseline_of(const shoal::image_t& message) {
 }
 
 /// Returns the numbers of a list in the lens, with 0 for what is none.
-std::vector<double> numbers_of(const sim::ConfigNode& lens, std::string_view key) {
+std::vector<double> lens_numbers(const sim::ConfigNode& lens, std::string_view key) {
   std::vector<double> numbers;
   if (const sim::ConfigNode* list = lens.find(key))
     for (const sim::ConfigNode& item : list->items) {
@@ -44,11 +44,11 @@ std::vector<double> numbers_of(const sim::ConfigNode& lens, std::string_view key
 /// The lens of a camera of Shoal.  Positions in the image count from the center of the first pixel, as in OpenCV.
 bool write_camera_info(const shoal::image_t& message, std::string_view channel, CdrWriter& out) {
   const sim::ConfigNode lens = lens_of(message);
-  const std::vector<double> focal_px = numbers_of(lens, "focal_px"), principal_px = numbers_of(lens, "principal_px");
+  const std::vector<double> focal_px = lens_numbers(lens, "focal_px"), principal_px = lens_numbers(lens, "principal_px");
   if (message.width < 1 || message.height < 1 || focal_px.size() != 2 || principal_px.size() != 2) return false;
   const sim::ConfigNode* kind = lens.find("lens");
   const bool fisheye = kind != nullptr && kind->scalar == "fisheye";
-  std::vector<double> distortion = numbers_of(lens, "distortion");
+  std::vector<double> distortion = lens_numbers(lens, "distortion");
   distortion.resize(fisheye ? 4 : 5);
   const double cx = principal_px[0] - 0.5, cy = principal_px[1] - 0.5;
   put_header(out, message.utime, optical_frame_of(channel));
