@@ -14,7 +14,7 @@ import unittest
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 COMMANDS = ("awk basename bash cat chmod dirname env grep head mkdir mktemp python3 rm sed sort tail touch tr").split()
 PACKAGES = ("# A list.\n\n# [run]\n# build\nno-such-a\n# [test]\n# tests\nno-such-b\n# [ci]\n"
-            "# fuzzing (needs clang)\nno-such-c\nno-such-d\n# lint\nno-such-e\n")
+            "# fuzzing (needs clang)\nno-such-c\nno-such-d\n# lint\nno-such-e\n# [release]\n# images\nno-such-f\n")
 DEBIAN = 'PRETTY_NAME="Debian GNU/Linux {0}"\nID=debian\nVERSION_ID="{0}"\n'
 # apt-get install notes its packages, which dpkg-query then finds.
 STUBS = {
@@ -116,6 +116,7 @@ class Setup(Scratch):
         self.assertEqual(self.run_script("tools/setup", "--for", "run", "--list"), ["no-such-a"])
         self.assertEqual(self.run_script("tools/setup", "--list"), ["no-such-a", "no-such-b"])
         self.assertEqual(self.run_script("tools/setup", "--for", "ci", "--list"), [f"no-such-{c}" for c in "abcde"])
+        self.assertEqual(self.run_script("tools/setup", "--for", "release", "--list"), [f"no-such-{c}" for c in "abcdef"])
 
     def test_what_is_left_out_is_named_in_one_line(self):
         self.assertEqual(self.run_script("tools/setup", "--for", "test", "--left-out"),
@@ -129,8 +130,8 @@ class Setup(Scratch):
 
     def test_wrong_words_are_named(self):
         self.assertEqual(self.run_script("tools/setup", "--for", "x", code=2),
-                         ["tools/setup: --for must be run, test or ci, got 'x'"])
-        self.assertEqual(self.run_script("tools/setup", "--for", code=2), ["tools/setup: --for needs run, test or ci"])
+                         ["tools/setup: --for must be run, test, ci or release, got 'x'"])
+        self.assertEqual(self.run_script("tools/setup", "--for", code=2), ["tools/setup: --for needs run, test, ci or release"])
 
     def test_another_system_than_debian(self):
         os.remove(self.path("bin", "dpkg-query"))

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <memory>
 
+#include "bridges/base/child_program.hpp"
 #include "bridges/bus/network_check.hpp"
+#include "experiment/process/helper_programs.hpp"
 #include "tools/shoal/commands/commands.hpp"
 
 namespace tools {
@@ -21,6 +25,18 @@ const char* word(bridges::Finding::Verdict verdict) {
   }
 }
 
+/// Prints which programs of others are missing, and how to install them.
+void report_helpers() {
+  const std::vector<experiment::HelperProgram> missing = experiment::missing_helpers(bridges::is_program);
+  for (const experiment::HelperProgram& each : missing)
+    std::cout << "missing " << each.name << ": needed for " << each.purpose << '\n';
+  if (missing.empty()) return;
+  std::ifstream file("/etc/os-release");
+  const std::string release{std::istreambuf_iterator<char>(file), {}};
+  std::cout << "\nFor what is missing, run as root, or leave it out:\n  "
+            << experiment::install_command(missing, release) << '\n';
+}
+
 int examine(const std::string& url) {
   bool usable = true;
   std::vector<std::string> commands;
@@ -33,6 +49,7 @@ int examine(const std::string& url) {
   }
   if (!commands.empty()) std::cout << "\nTo fix it, run as root:\n";
   for (const std::string& command : commands) std::cout << "  " << command << '\n';
+  report_helpers();
   std::cout << (usable ? "\nLCM is usable here.\n" : "\nLCM is not usable here.\n");
   return usable ? exit_ok : exit_bus;
 }
@@ -48,7 +65,7 @@ static void add_doctor_command(CLI::App& app, int& exit_code) {
   command->callback([url, &exit_code] { exit_code = examine(*url); });
 }
 
-SHOAL_COMMAND(connect, "doctor", "Check whether LCM works on this machine, and print how to fix it",
+SHOAL_COMMAND(connect, "doctor", "Check LCM and helper programs on this machine, and print how to fix them",
               add_doctor_command);
 
 }  // namespace tools

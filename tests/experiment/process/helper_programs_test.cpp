@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "experiment/process/helper_programs.hpp"
+
+#include <gmock/gmock.h>
+
+namespace {
+
+using testing::HasSubstr;
+
+std::vector<experiment::HelperProgram> all() {
+  return experiment::missing_helpers([](const std::string&) { return false; });
+}
+
+TEST(HelperPrograms, ThoseThatAreThereAreNotMissing) {
+  const auto missing = experiment::missing_helpers([](const std::string& name) { return name != "gnuplot"; });
+  ASSERT_EQ(missing.size(), 1u);
+  EXPECT_STREQ(missing[0].name, "gnuplot");
+  EXPECT_TRUE(experiment::missing_helpers([](const std::string&) { return true; }).empty());
+}
+
+TEST(HelperPrograms, DebianAndUbuntuInstallThemByApt) {
+  EXPECT_THAT(experiment::install_command(all(), "PRETTY_NAME=\"Debian\"\nID=debian\nVERSION_ID=\"13\"\n"),
+              HasSubstr("apt-get install gnuplot-nox ffmpeg"));
+  EXPECT_THAT(experiment::install_command(all(), "ID=ubuntu\nID_LIKE=debian\n"), HasSubstr("apt-get install gnuplot-nox"));
+  EXPECT_THAT(experiment::install_command(all(), "ID=linuxmint\nID_LIKE=\"ubuntu debian\"\n"), HasSubstr("apt-get install"));
+}
+
+TEST(HelperPrograms, OtherSystemsAreToldTheNamesOfThePrograms) {
+  EXPECT_EQ(experiment::install_command({all()[0]}, "ID=fedora\n"),
+            "install by the package manager of this system: gnuplot");
+  EXPECT_THAT(experiment::install_command({all()[0]}, ""), HasSubstr("gnuplot"));
+}
+
+}  // namespace
