@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "sim/acoustics/modulation.hpp"
+#include "sim/acoustics/propagation/modulation.hpp"
 
 namespace devices {
 

@@ -12,7 +12,7 @@
 #include "devices/common/serial_port.hpp"
 #include "devices/comms/message_modem.hpp"
 #include "devices/sound_positioning/signal_carrier.hpp"
-#include "sim/acoustics/signal.hpp"
+#include "sim/acoustics/propagation/signal.hpp"
 #include "sim/base/time.hpp"
 #include "sim/vehicle/device_context.hpp"
 #include "sim/vehicle/vehicle.hpp"

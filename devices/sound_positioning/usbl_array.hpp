@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "sim/acoustics/decibels.hpp"
+#include "sim/acoustics/propagation/decibels.hpp"
 #include "sim/base/math.hpp"
 #include "sim/config/param_reader.hpp"
 

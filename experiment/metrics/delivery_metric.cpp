@@ -2,7 +2,7 @@
 #include "experiment/metrics/modems_params.hpp"
 #include "experiment/score/link_counts.hpp"
 #include "experiment/score/metric_registry.hpp"
-#include "sim/acoustics/signal.hpp"
+#include "sim/acoustics/propagation/signal.hpp"
 
 namespace experiment {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "sim/acoustics/sound_path.hpp"
+#include "sim/acoustics/propagation/sound_path.hpp"
 #include "sim/base/thread_pool.hpp"
 #include "sim/device/fault.hpp"
 

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "sim/acoustics/signal.hpp"
+#include "sim/acoustics/propagation/signal.hpp"
 #include "sim/state/state_archive.hpp"
 
 namespace sim {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/acoustics/numbered_pool.hpp"
-#include "sim/acoustics/signal.hpp"
+#include "sim/acoustics/propagation/signal.hpp"
 #include "sim/state/state_archive.hpp"
 
 namespace sim {

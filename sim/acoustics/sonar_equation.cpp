@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "sim/acoustics/link_losses.hpp"
-#include "sim/acoustics/sound_path.hpp"
+#include "sim/acoustics/propagation/link_losses.hpp"
+#include "sim/acoustics/propagation/sound_path.hpp"
 #include "sim/device/fault.hpp"
 #include "sim/physics/body.hpp"
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "sim/acoustics/acoustics_config.hpp"
-#include "sim/acoustics/propagation.hpp"
+#include "sim/acoustics/propagation/acoustics_config.hpp"
+#include "sim/acoustics/propagation/propagation.hpp"
 #include "sim/acoustics/transducer.hpp"
 #include "sim/acoustics/transmissions.hpp"
 #include "sim/medium/medium.hpp"

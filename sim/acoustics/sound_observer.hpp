@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "sim/acoustics/signal.hpp"
+#include "sim/acoustics/propagation/signal.hpp"
 #include "sim/base/math.hpp"
 #include "sim/base/time.hpp"
 

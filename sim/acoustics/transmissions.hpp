@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/acoustics/directivity.hpp"
+#include "sim/acoustics/propagation/directivity.hpp"
 #include "sim/acoustics/numbered_pool.hpp"
-#include "sim/acoustics/signal.hpp"
+#include "sim/acoustics/propagation/signal.hpp"
 #include "sim/acoustics/transducers.hpp"
 #include "sim/base/math.hpp"
 #include "sim/state/state_archive.hpp"

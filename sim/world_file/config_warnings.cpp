@@ -5,7 +5,7 @@
 #include <cmath>
 #include <initializer_list>
 
-#include "sim/acoustics/propagation.hpp"
+#include "sim/acoustics/propagation/propagation.hpp"
 #include "sim/base/math.hpp"
 #include "sim/base/number.hpp"
 #include "sim/config/message_text.hpp"

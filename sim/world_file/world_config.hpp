@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/acoustics/acoustics_config.hpp"
+#include "sim/acoustics/propagation/acoustics_config.hpp"
 #include "sim/base/geodesy.hpp"
 #include "sim/config/choice_words.hpp"
 #include "sim/config/file_access.hpp"

@@ -38,6 +38,16 @@ class DriveController final : public sim::Controller {
   Drive& drive_;
 };
 """, "}"),
+    "const sim::Presets& ground_probe_presets();  // ground_probe_presets.yaml": ("""
+#include <string>
+#include "sim/config/presets.hpp"
+struct GroundProbe {
+  struct Params {
+    std::string preset = "none";
+    void read(sim::ParamReader& in);
+  };
+};
+""", ""),
     "struct State { Filter filter; Plan plan; };  // all that decisions depend on": ("""
 #include <map>
 #include "shoal/client.hpp"

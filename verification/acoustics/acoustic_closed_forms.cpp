@@ -10,10 +10,10 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "sim/acoustics/ambient_noise.hpp"
-#include "sim/acoustics/modulation.hpp"
-#include "sim/acoustics/sound_path.hpp"
-#include "sim/acoustics/transmission_loss.hpp"
+#include "sim/acoustics/propagation/ambient_noise.hpp"
+#include "sim/acoustics/propagation/modulation.hpp"
+#include "sim/acoustics/propagation/sound_path.hpp"
+#include "sim/acoustics/propagation/transmission_loss.hpp"
 #include "sim/base/number.hpp"
 #include "sim/medium/sea_water.hpp"
 

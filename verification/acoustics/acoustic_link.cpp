@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "devices/comms/micromodem_rates.hpp"
-#include "sim/acoustics/acoustics_config.hpp"
-#include "sim/acoustics/multipath.hpp"
-#include "sim/acoustics/propagation.hpp"
+#include "sim/acoustics/propagation/acoustics_config.hpp"
+#include "sim/acoustics/propagation/multipath.hpp"
+#include "sim/acoustics/propagation/propagation.hpp"
 #include "sim/acoustics/rays/ray_tables.hpp"
-#include "sim/acoustics/sound_path.hpp"
+#include "sim/acoustics/propagation/sound_path.hpp"
 #include "sim/random/random.hpp"
 
 namespace verification {

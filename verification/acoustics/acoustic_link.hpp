@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/acoustics/acoustics_config.hpp"
-#include "sim/acoustics/directivity.hpp"
-#include "sim/acoustics/modulation.hpp"
+#include "sim/acoustics/propagation/acoustics_config.hpp"
+#include "sim/acoustics/propagation/directivity.hpp"
+#include "sim/acoustics/propagation/modulation.hpp"
 #include "sim/medium/medium.hpp"
 
 namespace verification {

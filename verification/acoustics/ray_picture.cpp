@@ -12,7 +12,7 @@
 
 #include "experiment/files/gnuplot.hpp"
 #include "experiment/files/scratch_directory.hpp"
-#include "sim/acoustics/propagation.hpp"
+#include "sim/acoustics/propagation/propagation.hpp"
 #include "sim/acoustics/rays/ray_tables.hpp"
 
 namespace verification {

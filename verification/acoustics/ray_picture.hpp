@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/acoustics/acoustics_config.hpp"
+#include "sim/acoustics/propagation/acoustics_config.hpp"
 #include "sim/acoustics/rays/ray_trace.hpp"
 #include "sim/medium/medium.hpp"
 

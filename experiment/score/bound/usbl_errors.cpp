@@ -6,7 +6,7 @@
 #include "devices/sound_positioning/transponder.hpp"
 #include "devices/sound_positioning/usbl.hpp"
 #include "experiment/score/bound/device_params.hpp"
-#include "sim/acoustics/propagation.hpp"
+#include "sim/acoustics/propagation/propagation.hpp"
 
 namespace experiment {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "devices/sound_positioning/usbl_array.hpp"
-#include "sim/acoustics/acoustics_config.hpp"
+#include "sim/acoustics/propagation/acoustics_config.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/world_file/vehicle_config.hpp"
 

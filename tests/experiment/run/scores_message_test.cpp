@@ -16,7 +16,7 @@ TEST(ScoresMessage, HasTheFiguresAndBothSidesOfEachRule) {
   world.run_for(0.1);
   world.estimate("good", 1, 2);
   world.run_for(0.1);
-  shoal::sim_scores_t message;
+  shoal::sim_scores_t message{};
   experiment::fill_scores(world.scoring, message);
   experiment::fill_scores(world.scoring, message);  // it replaces what was there
   ASSERT_EQ(message.count, static_cast<std::int32_t>(world.scoring.figures().size()));

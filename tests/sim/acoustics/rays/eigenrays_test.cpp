@@ -10,7 +10,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "sim/acoustics/multipath.hpp"
+#include "sim/acoustics/propagation/multipath.hpp"
 #include "sim/acoustics/rays/ray_tables.hpp"
 #include "sim/acoustics/rays/ray_trace.hpp"
 #include "sim/medium/water_column.hpp"
