@@ -44,7 +44,8 @@ std::vector<double> lens_numbers(const sim::ConfigNode& lens, std::string_view k
 /// The lens of a camera of Shoal.  Positions in the image count from the center of the first pixel, as in OpenCV.
 bool write_camera_info(const shoal::image_t& message, std::string_view channel, CdrWriter& out) {
   const sim::ConfigNode lens = lens_of(message);
-  const std::vector<double> focal_px = lens_numbers(lens, "focal_px"), principal_px = lens_numbers(lens, "principal_px");
+  const std::vector<double> focal_px = lens_numbers(lens, "focal_px"),
+                            principal_px = lens_numbers(lens, "principal_px");
   if (message.width < 1 || message.height < 1 || focal_px.size() != 2 || principal_px.size() != 2) return false;
   const sim::ConfigNode* kind = lens.find("lens");
   const bool fisheye = kind != nullptr && kind->scalar == "fisheye";
