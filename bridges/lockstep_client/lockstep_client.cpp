@@ -111,7 +111,8 @@ void LockstepClient::request(const std::string& command, double value, const std
   while (Clock::now() < deadline && !(stop_ && heed_stop)) {
     send_request(command, id, value, text);
     const auto resend = std::min(deadline, Clock::now() + interval);
-    interval = next_resend_interval(interval);
+    // A leave has little time, and the world waits for its client if all copies are lost.
+    if (command != "leave") interval = next_resend_interval(interval);
     while (auto message = wait(resend, heed_stop)) {
       take(std::move(*message));
       if (answered_id_ != id) continue;
