@@ -6,15 +6,15 @@
 #include <string>
 #include <vector>
 
-#include "sim/acoustics/propagation/acoustics_config.hpp"
 #include "sim/acoustics/deferred_arrivals.hpp"
 #include "sim/acoustics/flights.hpp"
 #include "sim/acoustics/message_counts.hpp"
 #include "sim/acoustics/motion_clock.hpp"
+#include "sim/acoustics/propagation/acoustics_config.hpp"
 #include "sim/acoustics/propagation/propagation.hpp"
+#include "sim/acoustics/propagation/signal.hpp"
 #include "sim/acoustics/receiver_search.hpp"
 #include "sim/acoustics/receptions.hpp"
-#include "sim/acoustics/propagation/signal.hpp"
 #include "sim/acoustics/sonar_equation.hpp"
 #include "sim/acoustics/sound_observer.hpp"
 #include "sim/acoustics/sound_reports.hpp"

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "sim/acoustics/propagation/acoustics_config.hpp"
 #include "sim/acoustics/neighborhood.hpp"
+#include "sim/acoustics/propagation/acoustics_config.hpp"
 #include "sim/acoustics/propagation/propagation.hpp"
 #include "sim/acoustics/transducers.hpp"
 #include "sim/acoustics/transmissions.hpp"

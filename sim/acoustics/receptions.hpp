@@ -4,11 +4,11 @@
 #include <optional>
 
 #include "sim/acoustics/acoustic_events.hpp"
-#include "sim/acoustics/propagation/acoustics_config.hpp"
 #include "sim/acoustics/flights.hpp"
 #include "sim/acoustics/motion_clock.hpp"
-#include "sim/acoustics/sonar_equation.hpp"
+#include "sim/acoustics/propagation/acoustics_config.hpp"
 #include "sim/acoustics/propagation/sound_path.hpp"
+#include "sim/acoustics/sonar_equation.hpp"
 #include "sim/acoustics/transmissions.hpp"
 #include "sim/medium/medium.hpp"
 

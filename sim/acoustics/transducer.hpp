@@ -5,8 +5,8 @@
 #include <limits>
 #include <string>
 
-#include "sim/acoustics/propagation/directivity.hpp"
 #include "sim/acoustics/numbered_pool.hpp"
+#include "sim/acoustics/propagation/directivity.hpp"
 #include "sim/acoustics/propagation/signal.hpp"
 #include "sim/acoustics/signal_receiver.hpp"
 #include "sim/acoustics/sound_site.hpp"

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/acoustics/propagation/directivity.hpp"
 #include "sim/acoustics/numbered_pool.hpp"
+#include "sim/acoustics/propagation/directivity.hpp"
 #include "sim/acoustics/propagation/signal.hpp"
 #include "sim/acoustics/transducers.hpp"
 #include "sim/base/math.hpp"

@@ -13,8 +13,8 @@
 #include "sim/acoustics/propagation/acoustics_config.hpp"
 #include "sim/acoustics/propagation/multipath.hpp"
 #include "sim/acoustics/propagation/propagation.hpp"
-#include "sim/acoustics/rays/ray_tables.hpp"
 #include "sim/acoustics/propagation/sound_path.hpp"
+#include "sim/acoustics/rays/ray_tables.hpp"
 #include "sim/random/random.hpp"
 
 namespace verification {

@@ -10,8 +10,8 @@
 
 #include "sim/acoustics/propagation/acoustics_config.hpp"
 #include "sim/acoustics/propagation/multipath.hpp"
-#include "sim/acoustics/rays/eigenrays.hpp"
 #include "sim/acoustics/propagation/signal.hpp"
+#include "sim/acoustics/rays/eigenrays.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/random/random.hpp"

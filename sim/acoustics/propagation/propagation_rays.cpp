@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "sim/acoustics/propagation/propagation.hpp"
+#include "sim/acoustics/propagation/sound_path.hpp"
 #include "sim/acoustics/rays/caustic.hpp"
 #include "sim/acoustics/rays/ray_tables.hpp"
-#include "sim/acoustics/propagation/sound_path.hpp"
 
 // Propagation along rays, and the echoes on which a receiver may lock.
 

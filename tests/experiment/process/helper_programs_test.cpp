@@ -21,8 +21,10 @@ TEST(HelperPrograms, ThoseThatAreThereAreNotMissing) {
 TEST(HelperPrograms, DebianAndUbuntuInstallThemByApt) {
   EXPECT_THAT(experiment::install_command(all(), "PRETTY_NAME=\"Debian\"\nID=debian\nVERSION_ID=\"13\"\n"),
               HasSubstr("apt-get install gnuplot-nox ffmpeg"));
-  EXPECT_THAT(experiment::install_command(all(), "ID=ubuntu\nID_LIKE=debian\n"), HasSubstr("apt-get install gnuplot-nox"));
-  EXPECT_THAT(experiment::install_command(all(), "ID=linuxmint\nID_LIKE=\"ubuntu debian\"\n"), HasSubstr("apt-get install"));
+  EXPECT_THAT(experiment::install_command(all(), "ID=ubuntu\nID_LIKE=debian\n"),
+              HasSubstr("apt-get install gnuplot-nox"));
+  EXPECT_THAT(experiment::install_command(all(), "ID=linuxmint\nID_LIKE=\"ubuntu debian\"\n"),
+              HasSubstr("apt-get install"));
 }
 
 TEST(HelperPrograms, OtherSystemsAreToldTheNamesOfThePrograms) {
