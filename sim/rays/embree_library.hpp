@@ -52,39 +52,39 @@ class RayQuery {
   static constexpr RTCSceneFlags filter_flag = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 #endif
 
+#if RTC_VERSION_MAJOR >= 4
   void intersect(RTCScene scene, RTCRayHit& ray) {
-    rtcIntersect1(scene, to_intersect(), &ray);
+    rtcIntersect1(scene, &ray, &intersect_);
   }
   void intersect(RTCScene scene, const int* valid, RTCRayHit8& rays) {
-    rtcIntersect8(valid, scene, to_intersect(), &rays);
+    rtcIntersect8(valid, scene, &rays, &intersect_);
   }
   void find_occluded(RTCScene scene, RTCRay& ray) {
-    rtcOccluded1(scene, to_occlude(), &ray);
+    rtcOccluded1(scene, &ray, &occluded_);
   }
   void find_occluded(RTCScene scene, const int* valid, RTCRay8& rays) {
-    rtcOccluded8(valid, scene, to_occlude(), &rays);
+    rtcOccluded8(valid, scene, &rays, &occluded_);
   }
 
  private:
-#if RTC_VERSION_MAJOR >= 4
-  RTCIntersectArguments* to_intersect() {
-    return &intersect_;
-  }
-  RTCOccludedArguments* to_occlude() {
-    return &occluded_;
-  }
-
   RTCRayQueryContext context_;  // first: see above
   RTCIntersectArguments intersect_;
   RTCOccludedArguments occluded_;
 #else
-  RTCIntersectContext* to_intersect() {
-    return &context_;
+  void intersect(RTCScene scene, RTCRayHit& ray) {
+    rtcIntersect1(scene, &context_, &ray);
   }
-  RTCIntersectContext* to_occlude() {
-    return &context_;
+  void intersect(RTCScene scene, const int* valid, RTCRayHit8& rays) {
+    rtcIntersect8(valid, scene, &context_, &rays);
+  }
+  void find_occluded(RTCScene scene, RTCRay& ray) {
+    rtcOccluded1(scene, &context_, &ray);
+  }
+  void find_occluded(RTCScene scene, const int* valid, RTCRay8& rays) {
+    rtcOccluded8(valid, scene, &context_, &rays);
   }
 
+ private:
   RTCIntersectContext context_;
 #endif
 };
