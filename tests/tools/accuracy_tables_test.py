@@ -1,36 +1,24 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The tables of docs/guides/cooperative_accuracy can be read as docs/guides/cooperative_accuracy.md says, which has the
 same figures."""
-import csv
-import pathlib
 import re
 import unittest
 
-FOLDER = pathlib.Path(__file__).resolve().parent.parent.parent / "docs/guides/cooperative_accuracy"
-PAGE = FOLDER.with_suffix(".md").read_text(encoding="utf-8")
-COLUMNS = "world case seeds quantity unit statistic value low high std min max remark".split()
+from page_tables import PageTables
 
-
-def rows(name="*.csv"):
-    for path in sorted(FOLDER.glob(name)):
-        with open(path, newline="", encoding="utf-8") as file:
-            reader = csv.DictReader(file, strict=True)
-            for row in reader:
-                yield f"{path.name}:{reader.line_num}", row
+TABLES = PageTables("guides/cooperative_accuracy",
+                    "world case seeds quantity unit statistic value low high std min max remark")
 
 
 class AccuracyTables(unittest.TestCase):
 
     def test_the_page_links_every_table_and_describes_every_column(self):
-        self.assertEqual(sorted(re.findall(r"\(cooperative_accuracy/(\w+\.csv)\)", PAGE)),
-                         sorted(path.name for path in FOLDER.iterdir()))
-        described = PAGE[PAGE.index("| column | meaning |"):]
-        self.assertEqual(re.findall(r"`(\w+)`", " ".join(re.findall(r"^\| (`.+?`) \|", described, re.M))), COLUMNS)
+        TABLES.check_page(self)
 
     def test_a_row_has_a_world_a_quantity_and_a_number_or_a_range(self):
-        for where, row in rows():
+        for where, row in TABLES.rows():
             with self.subTest(where):
-                self.assertEqual(list(row), COLUMNS)
+                self.assertEqual(list(row), TABLES.columns)
                 self.assertTrue(row["world"] and row["quantity"])
                 names = "value", "low", "high", "std", "min", "max"
                 numbers = {name: float(row[name]) for name in names if row[name]}
@@ -42,8 +30,8 @@ class AccuracyTables(unittest.TestCase):
 
     def test_the_page_has_the_figures_of_the_unseen_seeds(self):
         of_page = {cells[0]: cells[1:] for cells in
-                   (line.strip("| \n").split(" | ") for line in PAGE.splitlines() if line.startswith("| "))}
-        for where, row in rows("unseen_seeds.csv"):
+                   (line.strip("| \n").split(" | ") for line in TABLES.page.splitlines() if line.startswith("| "))}
+        for where, row in TABLES.rows("unseen_seeds.csv"):
             name = re.sub(" rms$", ", rms", row["quantity"])
             if row["statistic"] == "mean" and name in of_page:
                 self.assertEqual(of_page.pop(name), [row["value"], f"{row['low']} to {row['high']}", row["min"],
