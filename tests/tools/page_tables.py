@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tables of a page: docs/FOLDER/PAGE.md reads the files of docs/FOLDER/PAGE."""
+"""Tables of a page of docs/: the files of the folder of the same name hold its figures."""
 import csv
 import pathlib
 import re
