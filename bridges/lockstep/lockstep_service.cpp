@@ -299,7 +299,8 @@ void LockstepService::publish_end(const Wait& wait, milliseconds limit) {
   pending_.clear();
   lockstep_.request_all(world_.step_number());
   for (const auto& [client, dropped] : dropped_) notify_dropped(dropped, client);
-  // Repeat the last tick until all clients have confirmed.  Without back-off: a client that misses it waits in vain.
+  // Repeat the last tick until all clients have confirmed.  Without back-off: a client that misses it waits without
+  // success.
   const Clock::time_point start = Clock::now();
   Clock::time_point end = start + limit;
   Clock::time_point send_at = start;
