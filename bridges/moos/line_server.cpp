@@ -42,7 +42,7 @@ void LineServer::send(const std::string& text) {
   if (!has_client_ || text.empty()) return;
   {
     const std::lock_guard lock(mutex_);
-    output_ += text;
+    if (output_.size() <= max_waiting_bytes) output_ += text;
   }
   wake_.set();
 }
@@ -51,9 +51,15 @@ void LineServer::run() {
   while (!stopping_) {
     std::array<pollfd, 3> polled{
         {{wake_.fd(), POLLIN, 0}, {listener_.number(), POLLIN, 0}, {client_.number(), POLLIN, 0}}};
+    bool is_too_slow = false;
     {
       const std::lock_guard lock(mutex_);
       if (!output_.empty()) polled[2].events |= POLLOUT;
+      is_too_slow = output_.size() > max_waiting_bytes;
+    }
+    if (is_too_slow) {
+      drop_client();
+      continue;
     }
     if (poll(polled.data(), polled.size(), -1) < 0) continue;  // without a client, the third is ignored
     if (polled[0].revents != 0) wake_.clear();
@@ -86,12 +92,9 @@ void LineServer::serve_client(short events) {
     if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR)) return drop_client();
     if (count > 0) send(handlers_.received({bytes.data(), static_cast<std::size_t>(count)}));
   }
-  const std::unique_lock lock(mutex_);
+  const std::lock_guard lock(mutex_);
   const ssize_t sent = ::send(client_.number(), output_.data(), output_.size(), MSG_NOSIGNAL);
   if (sent > 0) output_.erase(0, static_cast<std::size_t>(sent));
-  if (output_.size() <= max_waiting_bytes) return;
-  output_.clear();
-  shutdown(client_.number(), SHUT_RDWR);  // seen as its end by the next reading
 }
 
 }  // namespace bridges
