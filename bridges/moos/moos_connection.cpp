@@ -19,9 +19,6 @@ namespace bridges {
 namespace {
 
 constexpr int connect_timeout_ms = 5000, retry_ms = 1000;
-/// Values that wait for the thread; when there are more, all are dropped.
-constexpr std::size_t max_waiting_values = 100'000;
-
 double wall_now_s() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
@@ -72,14 +69,13 @@ MoosConnection::~MoosConnection() {
   thread_.join();
 }
 
-void MoosConnection::notify(std::vector<MoosValue> values) {
+void MoosConnection::notify(const std::vector<MoosValue>& values) {
   if (!open_ || values.empty()) return;
-  {
-    const std::lock_guard lock(mutex_);
-    if (values_.size() > max_waiting_values) values_.clear();
-    values_.insert(values_.end(), std::make_move_iterator(values.begin()), std::make_move_iterator(values.end()));
-  }
-  wake_.set();
+  const std::lock_guard lock(mutex_);
+  if (!session_) return;
+  session_->notify(values, wall_now_s());
+  write();
+  if (!session_->output().empty()) wake_.set();  // the thread waits until the socket takes more
 }
 
 bool MoosConnection::await_open(std::chrono::milliseconds timeout) {
@@ -91,7 +87,7 @@ void MoosConnection::set_open(bool open) {
   {
     const std::lock_guard lock(mutex_);
     open_ = open;
-    if (!open) values_.clear();
+    if (!open) session_.reset();
   }
   opened_.notify_all();
 }
@@ -104,7 +100,8 @@ void MoosConnection::report_once(const std::string& sentence) {
 void MoosConnection::run() {
   while (!stopping_) {
     try {
-      serve(connect_tcp(options_.host, options_.port, wake_.fd()));
+      socket_ = connect_tcp(options_.host, options_.port, wake_.fd());
+      serve();
     } catch (const MoosError& error) {
       set_open(false);
       if (stopping_) break;
@@ -119,47 +116,49 @@ void MoosConnection::wait_for_next_try() {
   if (poll(&polled, 1, retry_ms) > 0) wake_.clear();
 }
 
-void MoosConnection::serve(const FileDescriptor& socket) {
-  MoosSession session(options_.terms, wall_now_s());
+void MoosConnection::serve() {
+  {
+    const std::lock_guard lock(mutex_);
+    session_.emplace(options_.terms, wall_now_s());
+    write();
+  }
   while (!stopping_) {
-    std::array<pollfd, 2> polled{{{socket.number(), POLLIN, 0}, {wake_.fd(), POLLIN, 0}}};
-    if (!session.output().empty()) polled[0].events |= POLLOUT;
+    std::array<pollfd, 2> polled{{{socket_.number(), POLLIN, 0}, {wake_.fd(), POLLIN, 0}}};
+    {
+      const std::lock_guard lock(mutex_);
+      if (!session_->output().empty()) polled[0].events |= POLLOUT;
+    }
     // Four times a second, which is often enough for keep_alive().
     poll(polled.data(), polled.size(), 250);
     if (polled[1].revents != 0) wake_.clear();
-    if (polled[0].revents != 0 && !read_from(socket, session)) throw MoosError("the connection was closed");
-    if (session.is_open() && !open_) {
+    std::vector<MoosMessage> received;
+    if ((polled[0].revents & ~POLLOUT) != 0) received = read();
+    if (session_->is_open() && !open_) {
       set_open(true);
-      report_once("connected to community '" + session.community() + "' as '" + options_.terms.name + "'");
+      report_once("connected to community '" + session_->community() + "' as '" + options_.terms.name + "'");
     }
-    std::vector<MoosValue> values;
-    {
-      const std::lock_guard lock(mutex_);
-      values.swap(values_);
-    }
-    session.notify(values, wall_now_s());
-    session.keep_alive(wall_now_s());
-    write_to(socket, session);
+    if (!received.empty() && options_.on_received) options_.on_received(received);
+    const std::lock_guard lock(mutex_);
+    session_->keep_alive(wall_now_s());
+    write();
   }
 }
 
-bool MoosConnection::read_from(const FileDescriptor& socket, MoosSession& session) {
+std::vector<MoosMessage> MoosConnection::read() {
   std::array<std::byte, 65536> bytes;
-  const ssize_t count = recv(socket.number(), bytes.data(), bytes.size(), 0);
-  if (count < 0) return errno == EAGAIN || errno == EINTR;
-  if (count == 0) return false;
-  session.receive({bytes.data(), static_cast<std::size_t>(count)}, wall_now_s());
-  const std::vector<MoosMessage> received = session.take_received();
-  if (!received.empty() && options_.on_received) options_.on_received(received);
-  return true;
+  const ssize_t count = recv(socket_.number(), bytes.data(), bytes.size(), 0);
+  if (count < 0 && (errno == EAGAIN || errno == EINTR)) return {};
+  if (count <= 0) throw MoosError("the connection was closed");
+  const std::lock_guard lock(mutex_);
+  session_->receive({bytes.data(), static_cast<std::size_t>(count)}, wall_now_s());
+  return session_->take_received();
 }
 
-void MoosConnection::write_to(const FileDescriptor& socket, MoosSession& session) {
-  const auto output = session.output();
+void MoosConnection::write() {
+  const auto output = session_->output();
   if (output.empty()) return;
-  const ssize_t count = send(socket.number(), output.data(), output.size(), MSG_NOSIGNAL);
-  if (count > 0) session.sent(static_cast<std::size_t>(count));
-  if (count < 0 && errno != EAGAIN && errno != EINTR) throw MoosError("the connection was closed");
+  const ssize_t count = send(socket_.number(), output.data(), output.size(), MSG_NOSIGNAL);
+  if (count > 0) session_->sent(static_cast<std::size_t>(count));  // an error is seen by the next read()
 }
 
 }  // namespace bridges

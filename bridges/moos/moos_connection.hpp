@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -21,7 +22,7 @@ namespace bridges {
 FileDescriptor connect_tcp(const std::string& host, int port, int wake);
 
 /// Client of a MOOSDB that may be absent, die and come back: a thread connects, subscribes, and tries again each second
-/// after it has lost the connection.
+/// after it has lost the connection.  notify() writes to the socket itself, which saves waking that thread.
 class MoosConnection {
  public:
   struct Options {
@@ -41,7 +42,7 @@ class MoosConnection {
   MoosConnection& operator=(const MoosConnection&) = delete;
 
   /// Sends values of variables.  Without a connection they are dropped, since others soon replace them.
-  void notify(std::vector<MoosValue> values);
+  void notify(const std::vector<MoosValue>& values);
   /// Waits until the connection is open; returns whether it is.
   bool await_open(std::chrono::milliseconds timeout);
   bool is_open() const { return open_; }
@@ -49,18 +50,21 @@ class MoosConnection {
  private:
   void run();
   /// Serves one connection until it is lost, which throws MoosError, or the end.
-  void serve(const FileDescriptor& socket);
-  bool read_from(const FileDescriptor& socket, MoosSession& session);
-  void write_to(const FileDescriptor& socket, MoosSession& session);
+  void serve();
+  /// Reads once; returns the messages that came for the variables.
+  std::vector<MoosMessage> read();
+  /// Gives the socket what it takes; the rest waits until poll() says that it takes more.
+  void write();
   void wait_for_next_try();
   void set_open(bool open);
   void report_once(const std::string& sentence);
 
   const Options options_;
   const WakeEvent wake_;
-  std::mutex mutex_;
+  std::mutex mutex_;  // of the session and of writing
   std::condition_variable opened_;
-  std::vector<MoosValue> values_;
+  std::optional<MoosSession> session_;
+  FileDescriptor socket_;
   std::atomic<bool> open_ = false, stopping_ = false;
   std::string last_report_;
   std::thread thread_;
