@@ -5,6 +5,7 @@
 
 #include "bridges/moos/vehicle_navigation.hpp"
 #include "shoal/actuator_command_t.hpp"
+#include "shoal/autopilot_command_t.hpp"
 #include "shoal/helm_command_t.hpp"
 #include "shoal/message_codec.hpp"
 
@@ -28,7 +29,15 @@ std::vector<ChannelPayload> thruster_commands(const ThrusterPair& pair, double p
     message.value = std::clamp(percent, -100.0, 100.0) / 100 * pair.full_ahead;
     return ChannelPayload{channel, shoal::encode(message)};
   };
-  return {command(pair.port, port_percent), command(pair.starboard, starboard_percent)};
+  std::vector<ChannelPayload> commands;
+  if (!pair.autopilot.empty()) {
+    shoal::autopilot_command_t off{};
+    off.utime = utime;
+    commands.push_back({pair.autopilot, shoal::encode(off)});
+  }
+  commands.push_back(command(pair.port, port_percent));
+  commands.push_back(command(pair.starboard, starboard_percent));
+  return commands;
 }
 
 }  // namespace bridges

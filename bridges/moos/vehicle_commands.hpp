@@ -26,11 +26,13 @@ struct HelmSetPoints {
 struct ThrusterPair {
   std::string port, starboard;  ///< channels of their commands; empty: there are none
   double full_ahead = 1;        ///< command at 100 percent
+  std::string autopilot;        ///< channel of an autopilot that would set them itself; empty: there is none
 };
 
 /// Returns the command to an autopilot.
 ChannelPayload helm_command(const std::string& channel, const HelmSetPoints& points, std::int64_t utime);
-/// Returns the commands to both propellers, in percent from -100 to 100.
+/// Returns the commands to both propellers, after that of their autopilot to leave them alone, in percent from -100 to
+/// 100.
 std::vector<ChannelPayload> thruster_commands(const ThrusterPair& pair, double port_percent, double starboard_percent,
                                               std::int64_t utime);
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "shoal/actuator_command_t.hpp"
+#include "shoal/autopilot_command_t.hpp"
 #include "shoal/helm_command_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "shoal/modem_send_t.hpp"
@@ -134,14 +135,16 @@ TEST(MoosCommands, ActuatorsTurnToTheRightAndDiveWithPositiveValues) {
 
 TEST(MoosCommands, TwoPropellersTurnTheBoatTogether) {
   MoosCommands::Options options = options_with(MoosCommands::Control::actuators);
-  options.thrusters = {"a.port.cmd", "a.starboard.cmd", 100};
+  options.thrusters = {"a.port.cmd", "a.starboard.cmd", 100, "a.autopilot.cmd"};
   MoosCommands commands(options);
   commands.take(posted("DESIRED_THRUST", 40));
   commands.take(posted("DESIRED_RUDDER", 10));
   const auto sent = commands.take_commands(0);
-  ASSERT_EQ(sent.size(), 2U);
-  EXPECT_NEAR(decoded<shoal::actuator_command_t>(sent[0]).value, 50, 1e-9);  // to the right: port pushes more
-  EXPECT_NEAR(decoded<shoal::actuator_command_t>(sent[1]).value, 30, 1e-9);
+  ASSERT_EQ(sent.size(), 3U);
+  EXPECT_EQ(sent[0].channel, "a.autopilot.cmd");
+  EXPECT_EQ(decoded<shoal::autopilot_command_t>(sent[0]).mode, 0);           // off
+  EXPECT_NEAR(decoded<shoal::actuator_command_t>(sent[1]).value, 50, 1e-9);  // to the right: port pushes more
+  EXPECT_NEAR(decoded<shoal::actuator_command_t>(sent[2]).value, 30, 1e-9);
 }
 
 TEST(MoosCommands, MessagesGoToTheModemAndComeBack) {

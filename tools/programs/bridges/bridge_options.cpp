@@ -36,7 +36,7 @@ std::string BridgedVehicle::command_channel(const std::string& device) const {
 }
 
 bridges::ThrusterPair BridgedVehicle::thrusters() const {
-  return {command_channel(port_thruster), command_channel(starboard_thruster), full_ahead};
+  return {command_channel(port_thruster), command_channel(starboard_thruster), full_ahead, command_channel(autopilot)};
 }
 
 void BridgedVehicle::subscribe(shoal::Client& client, VehicleNavigation& navigation,
