@@ -48,9 +48,10 @@ std::vector<std::string> programs_in(const std::string& world_file) {
   try {
     sim::Diagnostics problems;
     const sim::ConfigNode world = sim::parse_config_text(read_whole_file(world_file), world_file, problems);
-    if (const sim::ConfigNode* processes = world.find("processes"))
-      for (const sim::ConfigNode& process : processes->items)
-        if (const std::string* name = sim::name_of(process)) names.push_back(*name);
+    for (const char* key : {"processes", "bridges"})
+      if (const sim::ConfigNode* programs = world.find(key))
+        for (const sim::ConfigNode& program : programs->items)
+          if (const std::string* name = sim::name_of(program)) names.push_back(*name);
   } catch (const std::exception&) {  // there is none, or it cannot be read
   }
   return names;

@@ -80,7 +80,10 @@ int take_part(shoal::Client& client, const Participation& participation, Memory 
     lost = true;
     client.stop();
   });
-  client.join(participation.period_s, std::chrono::milliseconds(std::llround(1000 * participation.join_timeout_s)));
+  if (participation.in_lockstep)
+    client.join(participation.period_s, std::chrono::milliseconds(std::llround(1000 * participation.join_timeout_s)));
+  else
+    client.follow(participation.period_s);
   while (const auto utime = client.next_tick()) {
     if (lost) break;
     decide(*utime);
