@@ -32,8 +32,8 @@ struct ImportArguments {
   bool overwrite = false;
 };
 
-UrdfMeshOptions mesh_options(const ImportArguments& arguments) {
-  UrdfMeshOptions options;
+MeshOptions mesh_options(const ImportArguments& arguments) {
+  MeshOptions options;
   options.use = arguments.meshes == "hull" ? MeshUse::hull : arguments.meshes == "box" ? MeshUse::box : MeshUse::none;
   options.folder = plain_name(fs::path(arguments.output).stem().string()) + "_meshes";
   for (const std::string& package : arguments.packages) {
@@ -72,7 +72,7 @@ void check_output(const ImportArguments& arguments) {
   check_writable(arguments.output);
 }
 
-void write_files(const ImportArguments& arguments, const UrdfImport& result) {
+void write_files(const ImportArguments& arguments, const RobotImport& result) {
   const fs::path folder = fs::path(arguments.output).parent_path();
   std::error_code error;
   for (const auto& [path, mesh] : result.meshes) {
@@ -87,7 +87,7 @@ void write_files(const ImportArguments& arguments, const UrdfImport& result) {
   if (!(file << result.text << std::flush)) throw std::runtime_error(arguments.output + ": cannot be written");
 }
 
-void print_notes(const std::vector<UrdfNote>& notes) {
+void print_notes(const std::vector<ImportNote>& notes) {
   constexpr std::size_t max_notes = 500;
   for (std::size_t i = 0; i < std::min(notes.size(), max_notes); ++i)
     std::cerr << notes[i].place.text() << ": " << sim::printable(notes[i].text) << '\n';
@@ -99,12 +99,12 @@ std::string counted(std::size_t count, const std::string& word) {
 }
 
 int import_robot(const ImportArguments& arguments) {
-  const UrdfImportOptions options{.base = arguments.fixed_base ? Base::fixed : Base::free,
-                                  .density_kgpm3 = arguments.density_kgpm3,
-                                  .meshes = mesh_options(arguments),
-                                  .schema = schema_for(arguments.output)};
+  const RobotImportOptions options{.base = arguments.fixed_base ? Base::fixed : Base::free,
+                                   .density_kgpm3 = arguments.density_kgpm3,
+                                   .meshes = mesh_options(arguments),
+                                   .schema = schema_for(arguments.output)};
   check_output(arguments);
-  const UrdfImport result = import_urdf(arguments.file, options);
+  const RobotImport result = import_urdf(arguments.file, options);
   write_files(arguments, result);
   print_notes(result.vehicle.notes);
   const std::vector<ImportedJoint>& joints = result.vehicle.joints;

@@ -33,7 +33,7 @@ bool is_below(const fs::path& path, const fs::path& folder) {
 /// Finds mesh files in the folders that the user named.
 class MeshFolders {
  public:
-  MeshFolders(const std::string& urdf, const UrdfMeshOptions& options) : packages_(options.packages) {
+  MeshFolders(const std::string& urdf, const MeshOptions& options) : packages_(options.packages) {
     const fs::path parent = fs::path(urdf).parent_path();
     own_ = parent.empty() ? "." : parent;
     add(own_);
@@ -41,7 +41,7 @@ class MeshFolders {
   }
 
   /// Path of the mesh that a shape names, with symbolic links resolved.
-  std::string find(const UrdfShape& shape) const {
+  std::string find(const RobotShape& shape) const {
     const fs::path path = named(shape);
     std::error_code error;
     const fs::path resolved = fs::weakly_canonical(path, error);
@@ -60,7 +60,7 @@ class MeshFolders {
     const fs::path resolved = fs::canonical(folder, error);
     if (!error) allowed_.push_back(resolved);
   }
-  fs::path named(const UrdfShape& shape) const {
+  fs::path named(const RobotShape& shape) const {
     const std::string& mesh = shape.mesh;
     for (const std::string scheme : {"package://", "model://"}) {
       if (!mesh.starts_with(scheme)) continue;
@@ -112,7 +112,7 @@ void become_box(const sim::Mesh& mesh, ImportedPart& part) {
 /// Converts meshes, each file once.
 class MeshConversion {
  public:
-  MeshConversion(ImportedVehicle& vehicle, const UrdfMeshOptions& options)
+  MeshConversion(ImportedVehicle& vehicle, const MeshOptions& options)
       : vehicle_(vehicle), options_(options), folders_(vehicle.source, options), names_("mesh", {}) {}
 
   /// Converts a part.  Returns false, and adds a note, for one that is left out: a mesh file without triangles, and one
@@ -144,7 +144,7 @@ class MeshConversion {
             {part.shape.place, shown_path(part.shape.mesh) + " is flat: its bounding box replaces its convex hull"});
         return become_box(mesh, part);
       }
-      std::vector<UrdfNote> ignored;
+      std::vector<ImportNote> ignored;
       const std::string stem =
           std::filesystem::path(part.shape.mesh).stem().string() + (part.only_visual ? "" : "_hull");
       // A name is looked up by its original, which here is not unique.
@@ -159,12 +159,12 @@ class MeshConversion {
  private:
   using Key = std::tuple<std::string, double, double, double>;
 
-  Key key_of(const UrdfShape& shape) const {
+  Key key_of(const RobotShape& shape) const {
     return {folders_.find(shape), shape.scale.x(), shape.scale.y(), shape.scale.z()};
   }
   /// Returns whether a file exists and is a mesh without triangles, as programs write it: nothing but blanks, or an STL
   /// of only its head.
-  bool is_empty_file(const UrdfShape& shape) const {
+  bool is_empty_file(const RobotShape& shape) const {
     constexpr std::uintmax_t max_bytes = 1024;
     const std::string path = folders_.find(shape);
     std::error_code error;
@@ -180,7 +180,7 @@ class MeshConversion {
     if (bytes == header || (bytes == header + 4 && text.ends_with(std::string(4, '\0')))) return true;
     return text.starts_with("solid") && text.find("facet") == std::string::npos && text.find('\0') == std::string::npos;
   }
-  const sim::Mesh& read(const UrdfShape& shape) {
+  const sim::Mesh& read(const RobotShape& shape) {
     const Key key = key_of(shape);
     const auto known = meshes_.find(key);
     if (known != meshes_.end()) return known->second;
@@ -202,7 +202,7 @@ class MeshConversion {
   }
 
   ImportedVehicle& vehicle_;
-  const UrdfMeshOptions& options_;
+  const MeshOptions& options_;
   MeshFolders folders_;
   ShoalNames names_;
   static constexpr std::size_t max_triangles = 2 * sim::max_mesh_triangles;
@@ -215,7 +215,7 @@ class MeshConversion {
 
 }  // namespace
 
-std::vector<MeshFile> convert_meshes(ImportedVehicle& vehicle, const UrdfMeshOptions& options) {
+std::vector<MeshFile> convert_meshes(ImportedVehicle& vehicle, const MeshOptions& options) {
   MeshConversion conversion(vehicle, options);
   for (ImportedBody& body : vehicle.bodies) {
     if (options.use == MeshUse::none) {

@@ -18,7 +18,7 @@ enum class MeshUse {
   none   ///< left out
 };
 
-struct UrdfMeshOptions {
+struct MeshOptions {
   MeshUse use = MeshUse::hull;
   std::string folder = "meshes";                ///< of the files to write, below that of the vehicle file
   std::map<std::string, std::string> packages;  ///< folders of ROS packages by name, for package://NAME/...
@@ -29,6 +29,6 @@ using MeshFile = std::pair<std::string, sim::Mesh>;
 
 /// Replaces the meshes of the vehicle's parts: by boxes, by nothing, or by mesh files, which it returns.
 /// A mesh must lie below the folder of the URDF or of a package.  Throws sim::ConfigError.
-std::vector<MeshFile> convert_meshes(ImportedVehicle& vehicle, const UrdfMeshOptions& options);
+std::vector<MeshFile> convert_meshes(ImportedVehicle& vehicle, const MeshOptions& options);
 
 }  // namespace tools

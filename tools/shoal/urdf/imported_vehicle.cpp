@@ -9,14 +9,14 @@
 
 #include "sim/config/message_text.hpp"
 #include "tools/shoal/urdf/body_assembly.hpp"
+#include "tools/shoal/urdf/robot_tree.hpp"
 #include "tools/shoal/urdf/shoal_names.hpp"
-#include "tools/shoal/urdf/urdf_tree.hpp"
 
 namespace tools {
 namespace {
 
-bool is_free_joint(UrdfJointType type) {
-  return type == UrdfJointType::floating || type == UrdfJointType::planar;
+bool is_free_joint(RobotJointType type) {
+  return type == RobotJointType::floating || type == RobotJointType::planar;
 }
 
 /// Walks from the root to the ends, and starts a body at each joint that is not fixed.
@@ -25,17 +25,17 @@ class VehicleAssembly {
   explicit VehicleAssembly(ImportedVehicle& vehicle) : vehicle_(vehicle) {}
 
   /// Adds the root, which may stand for the world.
-  void add_root(const UrdfLink& link, bool is_world) {
+  void add_root(const RobotLink& link, bool is_world) {
     if (is_world) return places_.push_back({sim::Pose::Identity(), no_body});
     start_body(link, sim::Pose::Identity());
     places_.push_back({sim::Pose::Identity(), 0});
     bodies_.front().add(link, sim::Pose::Identity(), vehicle_.notes);
   }
   /// Adds a link whose parent was added before.
-  void add(const UrdfLink& link, const UrdfJoint& joint, std::size_t parent_number) {
+  void add(const RobotLink& link, const RobotJoint& joint, std::size_t parent_number) {
     const Place parent = places_[parent_number];
     const sim::Pose X_VL = parent.X_VL * joint.X_PJ;
-    const bool merges = joint.type == UrdfJointType::fixed && parent.body != no_body;
+    const bool merges = joint.type == RobotJointType::fixed && parent.body != no_body;
     if (!merges) start_body(link, X_VL);
     places_.push_back({X_VL, merges ? parent.body : bodies_.size() - 1});
     bodies_[places_.back().body].add(link, X_VL, vehicle_.notes);
@@ -47,11 +47,11 @@ class VehicleAssembly {
   void fix_base() {
     if (bodies_.empty() || (places_.front().body == no_body && !has_free_root_)) return;  // it is fixed
     bodies_.front().allow_no_mass();
-    UrdfJoint joint;
+    RobotJoint joint;
     joint.name = "fixed_base";
     add_joint(joint, {"world", bodies_.front().name()}, sim::Matrix3d::Identity());
   }
-  void finish(const UrdfLink& root, NoMass no_mass) {
+  void finish(const RobotLink& root, NoMass no_mass) {
     if (bodies_.empty()) sim::throw_config_error(root.place, "", "a robot needs a link other than 'world'");
     drop_empty_ends();
     for (ImportedJoint& joint : vehicle_.joints) find_followed(joint);
@@ -66,9 +66,9 @@ class VehicleAssembly {
   };
 
   /// A floating or planar joint from the root leaves the vehicle free.
-  void note_free_joint(const UrdfJoint& joint, const Place& parent) {
+  void note_free_joint(const RobotJoint& joint, const Place& parent) {
     const std::string who = "joint '" + sim::shortened(sim::printable(joint.name)) + "'";
-    const std::string type = joint.type == UrdfJointType::floating ? "floating" : "planar";
+    const std::string type = joint.type == RobotJointType::floating ? "floating" : "planar";
     if (parent.body != no_body || bodies_.size() > 1)
       sim::throw_config_error(joint.place, who,
                               "a joint of type '" + type +
@@ -113,10 +113,10 @@ class VehicleAssembly {
                                                "', and no other joint that moves has this name"});
     joint.follows.reset();
   }
-  void start_body(const UrdfLink& link, const sim::Pose& X_VB) {
+  void start_body(const RobotLink& link, const sim::Pose& X_VB) {
     bodies_.emplace_back(body_names_.add(link.name, link.place, vehicle_.notes), X_VB, link.place);
   }
-  void add_joint(const UrdfJoint& joint, const JointEnds& ends, const sim::Matrix3d& R_VJ) {
+  void add_joint(const RobotJoint& joint, const JointEnds& ends, const sim::Matrix3d& R_VJ) {
     const std::string name = joint_names_.add(joint.name, joint.place, vehicle_.notes);
     vehicle_.joints.push_back(imported_joint(joint, name, ends, R_VJ, vehicle_.notes));
   }
@@ -130,25 +130,25 @@ class VehicleAssembly {
 };
 
 /// Returns whether the root stands for the world: by its name, or because a free joint leads from it.
-bool is_world(const std::vector<UrdfBranch>& branches) {
-  const UrdfLink& root = *branches.front().link;
+bool is_world(const std::vector<RobotBranch>& branches) {
+  const RobotLink& root = *branches.front().link;
   const bool has_mass = root.inertial && root.inertial->mass_kg > 0;
   if (has_mass || !root.collisions.empty() || !root.visuals.empty()) return false;
   if (root.name == "world" && !root.inertial) return true;
   return std::any_of(branches.begin() + 1, branches.end(),
-                     [](const UrdfBranch& branch) { return branch.parent == 0 && is_free_joint(branch.joint->type); });
+                     [](const RobotBranch& branch) { return branch.parent == 0 && is_free_joint(branch.joint->type); });
 }
 
 }  // namespace
 
-ImportedVehicle vehicle_of(const UrdfRobot& robot, const std::string& file_name, Base base, NoMass no_mass) {
+ImportedVehicle vehicle_of(const RobotDescription& robot, const std::string& file_name, Base base, NoMass no_mass) {
   ImportedVehicle vehicle;
   vehicle.name = plain_name(robot.name);
   vehicle.source = file_name;
   vehicle.comment = robot.comment;
   vehicle.notes = robot.notes;
   VehicleAssembly assembly(vehicle);
-  const std::vector<UrdfBranch> branches = branches_of(robot);
+  const std::vector<RobotBranch> branches = branches_of(robot);
   assembly.add_root(*branches.front().link, is_world(branches));
   for (std::size_t i = 1; i < branches.size(); ++i)
     assembly.add(*branches[i].link, *branches[i].joint, branches[i].parent);
@@ -160,7 +160,7 @@ ImportedVehicle vehicle_of(const UrdfRobot& robot, const std::string& file_name,
 namespace {
 
 /// Sets the stops of the joint and the range of its servo.
-void set_range(const UrdfJoint& from, ImportedJoint& joint, std::vector<UrdfNote>& notes) {
+void set_range(const RobotJoint& from, ImportedJoint& joint, std::vector<ImportNote>& notes) {
   if (!from.lower || !from.upper) return;
   const double low = *from.lower, high = *from.upper;
   joint.servo_low = std::clamp(from.soft_lower.value_or(low), low, high);
@@ -181,8 +181,8 @@ void set_range(const UrdfJoint& from, ImportedJoint& joint, std::vector<UrdfNote
 
 }  // namespace
 
-ImportedJoint imported_joint(const UrdfJoint& from, const std::string& name, const JointEnds& ends,
-                             const sim::Matrix3d& R_VJ, std::vector<UrdfNote>& notes) {
+ImportedJoint imported_joint(const RobotJoint& from, const std::string& name, const JointEnds& ends,
+                             const sim::Matrix3d& R_VJ, std::vector<ImportNote>& notes) {
   ImportedJoint joint;
   joint.name = name;
   joint.place = from.place;
@@ -195,16 +195,16 @@ ImportedJoint imported_joint(const UrdfJoint& from, const std::string& name, con
     joint.axis_V = -joint.axis_V;
   }
   switch (from.type) {
-    case UrdfJointType::fixed:
-    case UrdfJointType::floating:
-    case UrdfJointType::planar:
+    case RobotJointType::fixed:
+    case RobotJointType::floating:
+    case RobotJointType::planar:
       joint.type = sim::JointType::fixed;
       return joint;
-    case UrdfJointType::prismatic:
+    case RobotJointType::prismatic:
       joint.type = sim::JointType::slider;
       break;
-    case UrdfJointType::revolute:
-    case UrdfJointType::continuous:
+    case RobotJointType::revolute:
+    case RobotJointType::continuous:
       joint.type = sim::JointType::hinge;
   }
   joint.damping = from.damping;

@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "sim/model/joint_type.hpp"
-#include "tools/shoal/urdf/urdf_model.hpp"
+#include "tools/shoal/urdf/robot_description.hpp"
 
 namespace tools {
 
 /// Part of a body: a shape of the URDF in the body's frame B.
 struct ImportedPart {
-  UrdfShape shape;  ///< its X_LS is not used
+  RobotShape shape;  ///< its X_LS is not used
   sim::Pose X_BP = sim::Pose::Identity();
   bool only_visual = false;  ///< collides with nothing
 };
@@ -40,8 +40,8 @@ struct ImportedJoint {
   std::optional<double> servo_low, servo_high;     ///< rad or m
   std::optional<double> max_velocity, max_effort;  ///< both set: it gets a servo, unless it follows another joint
   std::optional<double> max_acceleration;
-  double damping = 0, friction = 0;  ///< N m s/rad or N s/m; N m or N
-  std::optional<UrdfMimic> follows;  ///< the joint that it follows, by its name in the vehicle file
+  double damping = 0, friction = 0;   ///< N m s/rad or N s/m; N m or N
+  std::optional<RobotMimic> follows;  ///< the joint that it follows, by its name in the vehicle file
   sim::SourcePlace place;
   bool has_servo() const { return max_velocity && max_effort && !follows; }
 };
@@ -53,7 +53,7 @@ struct ImportedVehicle {
   std::vector<std::string> comment;  ///< lines before the root element of the source
   std::vector<ImportedBody> bodies;  ///< the first is the root
   std::vector<ImportedJoint> joints;
-  std::vector<UrdfNote> notes;
+  std::vector<ImportNote> notes;
 };
 
 /// Free: the root link moves.  Fixed: a joint fixes it to the world; it then needs no mass.
@@ -66,7 +66,7 @@ enum class NoMass { refused, of_shapes };
 /// merged into the body of their parent, and names become those that Shoal accepts.  A root link `world` without mass
 /// and shapes is the world, as is one from which a floating or planar joint leads.  An end without mass and shapes is
 /// left out.  Throws sim::ConfigError for a body without mass or with an impossible inertia.
-ImportedVehicle vehicle_of(const UrdfRobot& robot, const std::string& file_name, Base base = Base::free,
+ImportedVehicle vehicle_of(const RobotDescription& robot, const std::string& file_name, Base base = Base::free,
                            NoMass no_mass = NoMass::refused);
 
 /// Names of the bodies that a joint connects; `parent` may be `world`.
@@ -75,7 +75,7 @@ struct JointEnds {
 };
 
 /// Makes a joint of a vehicle file.  R_VJ: rotation of the joint's frame in the vehicle's frame.
-ImportedJoint imported_joint(const UrdfJoint& from, const std::string& name, const JointEnds& ends,
-                             const sim::Matrix3d& R_VJ, std::vector<UrdfNote>& notes);
+ImportedJoint imported_joint(const RobotJoint& from, const std::string& name, const JointEnds& ends,
+                             const sim::Matrix3d& R_VJ, std::vector<ImportNote>& notes);
 
 }  // namespace tools

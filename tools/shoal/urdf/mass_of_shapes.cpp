@@ -71,7 +71,7 @@ class HullSolids {
 };
 
 /// Solid of a part in its own frame.
-sim::MeshSolid solid_of_part(const UrdfShape& shape, HullSolids& hulls) {
+sim::MeshSolid solid_of_part(const RobotShape& shape, HullSolids& hulls) {
   switch (shape.shape) {
     case sim::PartShape::box:
       return box(shape.size_m);
@@ -133,7 +133,7 @@ std::string fault_of(const sim::Matrix3d& inertia_kgm2) {
                      shown(2));
 }
 
-void complete(ImportedBody& body, HullSolids& hulls, double density_kgpm3, std::vector<UrdfNote>& notes) {
+void complete(ImportedBody& body, HullSolids& hulls, double density_kgpm3, std::vector<ImportNote>& notes) {
   // The shapes that collide are kept in the vehicle file; visual ones are the last resort.
   sim::MeshSolid solid = solid_of_body(body, false, hulls);
   if (!is_solid(solid, density_kgpm3)) solid = solid_of_body(body, true, hulls);

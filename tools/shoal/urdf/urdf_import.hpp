@@ -10,20 +10,20 @@
 namespace tools {
 
 /// Files and notes of an import.
-struct UrdfImport {
+struct RobotImport {
   ImportedVehicle vehicle;
   std::string text;              ///< of the vehicle file
   std::vector<MeshFile> meshes;  ///< to be written beside it
 };
 
-struct UrdfImportOptions {
+struct RobotImportOptions {
   Base base = Base::free;
   std::optional<double> density_kgpm3;  ///< of bodies without mass; unset: they are refused
-  UrdfMeshOptions meshes;
+  MeshOptions meshes;
   std::string schema;  ///< path of vehicle.schema.json; empty: none
 };
 
 /// Reads a URDF and converts it into a vehicle file.  Throws sim::ConfigError of one line.
-UrdfImport import_urdf(const std::string& path, const UrdfImportOptions& options);
+RobotImport import_urdf(const std::string& path, const RobotImportOptions& options);
 
 }  // namespace tools

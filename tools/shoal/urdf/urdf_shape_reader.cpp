@@ -15,7 +15,7 @@ constexpr double min_length_m = 1e-6, max_length_m = 1e7;  // of parts in Shoal
 constexpr double min_mesh_scale = 1e-9;
 
 /// Brings numbers for red, green, blue and opacity into the range from 0 to 1; empty: they are not 3 or 4 numbers.
-std::vector<double> color_numbers(const UrdfElement& color, std::vector<UrdfNote>& notes) {
+std::vector<double> color_numbers(const XmlElement& color, std::vector<ImportNote>& notes) {
   std::vector<double> rgba = color.any_numbers("rgba");
   const std::string what =
       "'rgba' must be four numbers from 0 to 1, got '" + sim::shortened(sim::printable(color.text("rgba"))) + "': ";
@@ -41,10 +41,10 @@ std::vector<double> color_numbers(const UrdfElement& color, std::vector<UrdfNote
 }
 
 /// Reads the color of a material; empty: it has none.
-std::string read_color(const UrdfElement& material, std::vector<UrdfNote>& notes) {
+std::string read_color(const XmlElement& material, std::vector<ImportNote>& notes) {
   if (!material.children("texture").empty())
     notes.push_back({material.children("texture").front().place(), "the texture of a material is not imported"});
-  const std::vector<UrdfElement> colors = material.children("color");
+  const std::vector<XmlElement> colors = material.children("color");
   if (colors.empty()) return "";
   const std::vector<double> rgba = color_numbers(colors.front(), notes);
   if (rgba.empty()) return "";
@@ -53,25 +53,25 @@ std::string read_color(const UrdfElement& material, std::vector<UrdfNote>& notes
   return fmt::format("#{:02x}{:02x}{:02x}", level(0), level(1), level(2));
 }
 
-void check_length(const UrdfElement& element, const char* attribute, double value) {
+void check_length(const XmlElement& element, const char* attribute, double value) {
   if (value < 0) element.refuse(fmt::format("'{}' must be > 0, got {}", attribute, sim::number_text(value)));
   if (value > max_length_m)
     element.refuse(fmt::format("'{}' must be at most 1e7 m, got {}", attribute, sim::number_text(value)));
 }
 
-double read_length(const UrdfElement& element, const char* attribute) {
+double read_length(const XmlElement& element, const char* attribute) {
   const double value = element.number(attribute);
   check_length(element, attribute, value);
   return value;
 }
 
-void read_box(const UrdfElement& box, UrdfShape& shape) {
+void read_box(const XmlElement& box, RobotShape& shape) {
   const std::vector<double> size = box.numbers("size", 3);
   for (const double length : size) check_length(box, "size", length);
   shape.size_m = {size[0], size[1], size[2]};
 }
 
-bool has_volume(const UrdfShape& shape) {
+bool has_volume(const RobotShape& shape) {
   const auto is_length = [](double value) { return value >= min_length_m; };
   switch (shape.shape) {
     case sim::PartShape::box:
@@ -86,20 +86,20 @@ bool has_volume(const UrdfShape& shape) {
   }
 }
 
-void read_mesh(const UrdfElement& mesh, UrdfShape& shape) {
+void read_mesh(const XmlElement& mesh, RobotShape& shape) {
   shape.mesh = mesh.text("filename");
   if (shape.mesh.empty()) mesh.refuse("'filename' must not be empty");
   shape.scale = mesh.vector("scale", sim::Vector3d::Ones());
   shape.place = mesh.place();
 }
 
-void read_geometry(const UrdfElement& geometry, UrdfShape& shape, std::vector<UrdfNote>& notes) {
-  const std::vector<UrdfElement> kinds = geometry.children();
+void read_geometry(const XmlElement& geometry, RobotShape& shape, std::vector<ImportNote>& notes) {
+  const std::vector<XmlElement> kinds = geometry.children();
   if (kinds.empty()) geometry.refuse("<geometry> must have a shape");
   if (kinds.size() > 1)
     notes.push_back({kinds[1].place(), fmt::format("{}: only the first element of a <geometry> is imported, <{}>",
                                                    geometry.who(), sim::shortened(sim::printable(kinds[0].name())))});
-  const UrdfElement& kind = kinds.front();
+  const XmlElement& kind = kinds.front();
   shape.place = kind.place();
   const std::string_view word = kind.name();
   if (word == "box") {
@@ -123,22 +123,22 @@ void read_geometry(const UrdfElement& geometry, UrdfShape& shape, std::vector<Ur
 
 }  // namespace
 
-UrdfColors read_urdf_colors(const UrdfElement& robot, std::vector<UrdfNote>& notes) {
+UrdfColors read_urdf_colors(const XmlElement& robot, std::vector<ImportNote>& notes) {
   UrdfColors colors;
-  std::vector<UrdfElement> materials = robot.children("material");
-  for (const UrdfElement& link : robot.children("link"))
-    for (const UrdfElement& visual : link.children("visual"))
-      for (const UrdfElement& material : visual.children("material")) materials.push_back(material);
-  for (const UrdfElement& material : materials) {
+  std::vector<XmlElement> materials = robot.children("material");
+  for (const XmlElement& link : robot.children("link"))
+    for (const XmlElement& visual : link.children("visual"))
+      for (const XmlElement& material : visual.children("material")) materials.push_back(material);
+  for (const XmlElement& material : materials) {
     const std::string color = read_color(material, notes);
     if (!color.empty()) colors.try_emplace(material.text("name", ""), color);
   }
   return colors;
 }
 
-std::optional<UrdfShape> read_urdf_shape(const UrdfElement& element, const UrdfColors& colors,
-                                         std::vector<UrdfNote>& notes) {
-  UrdfShape shape;
+std::optional<RobotShape> read_urdf_shape(const XmlElement& element, const UrdfColors& colors,
+                                          std::vector<ImportNote>& notes) {
+  RobotShape shape;
   element.note_others({"origin", "geometry", "material"}, notes);
   shape.name = element.text("name", "");
   shape.X_LS = element.origin();
@@ -148,13 +148,13 @@ std::optional<UrdfShape> read_urdf_shape(const UrdfElement& element, const UrdfC
                                               sim::word_of(sim::part_shape_words, shape.shape))});
     return std::nullopt;
   }
-  const std::vector<UrdfElement> materials = element.children("material");
+  const std::vector<XmlElement> materials = element.children("material");
   if (materials.empty()) return shape;
-  const UrdfElement& material = materials.front();
+  const XmlElement& material = materials.front();
   if (materials.size() > 1)
     notes.push_back({materials[1].place(), element.who() + ": only the first <material> of a shape is imported"});
   // The material's own color, else the one of its name; read_urdf_colors() has added the notes.
-  std::vector<UrdfNote> known_notes;
+  std::vector<ImportNote> known_notes;
   shape.color = read_color(material, known_notes);
   if (!shape.color.empty()) return shape;
   const std::string name = material.text("name", "");
@@ -167,8 +167,8 @@ std::optional<UrdfShape> read_urdf_shape(const UrdfElement& element, const UrdfC
   return shape;
 }
 
-std::optional<UrdfShape> read_urdf_visual(const UrdfElement& element, const UrdfColors& colors,
-                                          std::vector<UrdfNote>& notes) {
+std::optional<RobotShape> read_urdf_visual(const XmlElement& element, const UrdfColors& colors,
+                                           std::vector<ImportNote>& notes) {
   try {
     return read_urdf_shape(element, colors, notes);
   } catch (const sim::ConfigError& error) {

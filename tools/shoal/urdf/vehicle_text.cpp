@@ -45,7 +45,7 @@ std::string inertia_text(const sim::Matrix3d& inertia_kgm2) {
 }
 
 std::string part_text(const ImportedPart& part) {
-  const UrdfShape& shape = part.shape;
+  const RobotShape& shape = part.shape;
   FlowMap map;
   map.add_text("name", shape.name);
   map.add_text("shape", std::string(sim::word_of(sim::part_shape_words, shape.shape)));

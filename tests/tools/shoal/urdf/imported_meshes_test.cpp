@@ -37,7 +37,7 @@ class MeshFolder : public test_support::ScratchFolder {
     const std::string shape = "<" + kind + "><origin xyz=\"10 0 0\"/><geometry>" + mesh + "</geometry></" + kind + ">";
     return tools::vehicle_of(tools::read_urdf(test::robot_text(test::link_text("a", shape)), path), path);
   }
-  std::string error_of(const std::string& mesh, const tools::UrdfMeshOptions& options = {}) const {
+  std::string error_of(const std::string& mesh, const tools::MeshOptions& options = {}) const {
     tools::ImportedVehicle with_mesh = vehicle(mesh);
     try {
       tools::convert_meshes(with_mesh, options);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/shoal/urdf/urdf_element.hpp"
+#include "tools/shoal/urdf/xml_element.hpp"
 
 #include <spdlog/fmt/fmt.h>
 #include <tinyxml2.h>
@@ -51,51 +51,51 @@ std::string shown_text(std::string_view text) {
 
 }  // namespace
 
-UrdfElement::UrdfElement(const tinyxml2::XMLElement& element, const std::string* file, std::string who)
+XmlElement::XmlElement(const tinyxml2::XMLElement& element, const std::string* file, std::string who)
     : element_(&element), file_(file), who_(std::move(who)) {}
 
-std::string_view UrdfElement::name() const {
+std::string_view XmlElement::name() const {
   return element_->Name();
 }
 
-sim::SourcePlace UrdfElement::place() const {
+sim::SourcePlace XmlElement::place() const {
   return {file_, element_->GetLineNum(), 0};
 }
 
-void UrdfElement::refuse(const std::string& text) const {
+void XmlElement::refuse(const std::string& text) const {
   sim::throw_config_error(place(), who_, text);
 }
 
-std::vector<UrdfElement> UrdfElement::children() const {
-  std::vector<UrdfElement> found;
+std::vector<XmlElement> XmlElement::children() const {
+  std::vector<XmlElement> found;
   for (const auto* child = element_->FirstChildElement(); child != nullptr; child = child->NextSiblingElement())
     found.emplace_back(*child, file_, who_);
   return found;
 }
 
-std::vector<UrdfElement> UrdfElement::children(std::string_view name) const {
-  std::vector<UrdfElement> found;
-  for (const UrdfElement& child : children())
+std::vector<XmlElement> XmlElement::children(std::string_view name) const {
+  std::vector<XmlElement> found;
+  for (const XmlElement& child : children())
     if (child.name() == name) found.push_back(child);
   return found;
 }
 
-std::optional<UrdfElement> UrdfElement::child(std::string_view name) const {
-  const std::vector<UrdfElement> found = children(name);
+std::optional<XmlElement> XmlElement::child(std::string_view name) const {
+  const std::vector<XmlElement> found = children(name);
   if (found.size() > 1) found[1].refuse(fmt::format("has more than one <{}>", name));
   if (found.empty()) return std::nullopt;
   return found.front();
 }
 
-UrdfElement UrdfElement::required_child(std::string_view name) const {
-  const std::optional<UrdfElement> found = child(name);
+XmlElement XmlElement::required_child(std::string_view name) const {
+  const std::optional<XmlElement> found = child(name);
   if (!found) refuse(fmt::format("<{}> needs a <{}>", this->name(), name));
   return *found;
 }
 
-void UrdfElement::note_others(std::initializer_list<std::string_view> known, std::vector<UrdfNote>& notes) const {
+void XmlElement::note_others(std::initializer_list<std::string_view> known, std::vector<ImportNote>& notes) const {
   const std::string of = who_.empty() ? "" : who_ + ": ";
-  for (const UrdfElement& child : children()) {
+  for (const XmlElement& child : children()) {
     if (std::find(known.begin(), known.end(), child.name()) != known.end()) {
       child.note_other_attributes(of, notes);
       continue;
@@ -104,7 +104,7 @@ void UrdfElement::note_others(std::initializer_list<std::string_view> known, std
   }
 }
 
-void UrdfElement::note_other_attributes(const std::string& of, std::vector<UrdfNote>& notes) const {
+void XmlElement::note_other_attributes(const std::string& of, std::vector<ImportNote>& notes) const {
   // Elements that mean the same everywhere.
   static const std::map<std::string_view, std::set<std::string_view>> known_of = {
       {"origin", {"xyz", "rpy", "quat_xyzw"}},
@@ -122,11 +122,11 @@ void UrdfElement::note_other_attributes(const std::string& of, std::vector<UrdfN
                                             sim::shortened(sim::printable(each->Name())), name())});
 }
 
-bool UrdfElement::has(const char* attribute) const {
+bool XmlElement::has(const char* attribute) const {
   return element_->Attribute(attribute) != nullptr;
 }
 
-std::string UrdfElement::text(const char* attribute) const {
+std::string XmlElement::text(const char* attribute) const {
   if (!has(attribute)) refuse(fmt::format("<{}> needs the attribute '{}'", name(), attribute));
   const std::string value = element_->Attribute(attribute);
   if (value.find("${") != std::string::npos || value.find("$(") != std::string::npos)
@@ -135,11 +135,11 @@ std::string UrdfElement::text(const char* attribute) const {
   return value;
 }
 
-std::string UrdfElement::text(const char* attribute, const std::string& initial) const {
+std::string XmlElement::text(const char* attribute, const std::string& initial) const {
   return has(attribute) ? text(attribute) : initial;
 }
 
-std::vector<double> UrdfElement::any_numbers(const char* attribute) const {
+std::vector<double> XmlElement::any_numbers(const char* attribute) const {
   const std::string value = text(attribute);
   std::vector<double> parsed;
   for (const std::string_view word : words_of(value)) {
@@ -150,7 +150,7 @@ std::vector<double> UrdfElement::any_numbers(const char* attribute) const {
   return parsed;
 }
 
-std::vector<double> UrdfElement::numbers(const char* attribute, std::size_t count) const {
+std::vector<double> XmlElement::numbers(const char* attribute, std::size_t count) const {
   const std::string value = text(attribute);
   const std::vector<double> parsed = any_numbers(attribute);
   if (parsed.size() != count)
@@ -159,16 +159,16 @@ std::vector<double> UrdfElement::numbers(const char* attribute, std::size_t coun
   return parsed;
 }
 
-double UrdfElement::number(const char* attribute) const {
+double XmlElement::number(const char* attribute) const {
   return numbers(attribute, 1).front();
 }
 
-std::optional<double> UrdfElement::optional_number(const char* attribute) const {
+std::optional<double> XmlElement::optional_number(const char* attribute) const {
   if (!has(attribute)) return std::nullopt;
   return number(attribute);
 }
 
-double UrdfElement::limited_number(const char* attribute) const {
+double XmlElement::limited_number(const char* attribute) const {
   const std::string value = text(attribute);
   const std::vector<std::string_view> words = words_of(value);
   const std::optional<double> parsed = words.size() == 1 ? parse_number(words[0]) : std::nullopt;
@@ -176,14 +176,14 @@ double UrdfElement::limited_number(const char* attribute) const {
   return std::clamp(*parsed, -max_number, max_number);
 }
 
-sim::Vector3d UrdfElement::vector(const char* attribute, const sim::Vector3d& initial) const {
+sim::Vector3d XmlElement::vector(const char* attribute, const sim::Vector3d& initial) const {
   if (!has(attribute)) return initial;
   const std::vector<double> xyz = numbers(attribute, 3);
   return {xyz[0], xyz[1], xyz[2]};
 }
 
-sim::Pose UrdfElement::origin() const {
-  const std::optional<UrdfElement> origin = child("origin");
+sim::Pose XmlElement::origin() const {
+  const std::optional<XmlElement> origin = child("origin");
   if (!origin) return sim::Pose::Identity();
   const sim::Vector3d xyz = origin->vector("xyz", sim::Vector3d::Zero());
   if (!origin->has("quat_xyzw")) return sim::make_pose(xyz, origin->vector("rpy", sim::Vector3d::Zero()));

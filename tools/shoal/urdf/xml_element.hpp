@@ -9,7 +9,7 @@
 
 #include "sim/base/math.hpp"
 #include "sim/config/diagnostics.hpp"
-#include "tools/shoal/urdf/urdf_model.hpp"
+#include "tools/shoal/urdf/robot_description.hpp"
 
 namespace tinyxml2 {
 class XMLElement;
@@ -18,10 +18,10 @@ class XMLElement;
 namespace tools {
 
 /// Element of a URDF file.  Errors are sim::ConfigError of one line: `FILE:LINE: who: rule, value`.
-class UrdfElement {
+class XmlElement {
  public:
   /// `who`: the link or joint that contains it, for errors.
-  UrdfElement(const tinyxml2::XMLElement& element, const std::string* file, std::string who);
+  XmlElement(const tinyxml2::XMLElement& element, const std::string* file, std::string who);
 
   const std::string& who() const { return who_; }
   void set_who(std::string who) { who_ = std::move(who); }
@@ -30,14 +30,14 @@ class UrdfElement {
   [[noreturn]] void refuse(const std::string& text) const;
 
   /// Child elements, in the order of the file.
-  std::vector<UrdfElement> children() const;
-  std::vector<UrdfElement> children(std::string_view name) const;
+  std::vector<XmlElement> children() const;
+  std::vector<XmlElement> children(std::string_view name) const;
   /// The only child of this name; refuses a second one.
-  std::optional<UrdfElement> child(std::string_view name) const;
+  std::optional<XmlElement> child(std::string_view name) const;
   /// The only child of this name; refuses none.
-  UrdfElement required_child(std::string_view name) const;
+  XmlElement required_child(std::string_view name) const;
   /// Adds a note for each child whose name is none of these, and for each attribute of the others that is not imported.
-  void note_others(std::initializer_list<std::string_view> known, std::vector<UrdfNote>& notes) const;
+  void note_others(std::initializer_list<std::string_view> known, std::vector<ImportNote>& notes) const;
 
   bool has(const char* attribute) const;
   /// Attributes; the first form refuses a missing one.
@@ -56,7 +56,7 @@ class UrdfElement {
   sim::Pose origin() const;
 
  private:
-  void note_other_attributes(const std::string& of, std::vector<UrdfNote>& notes) const;
+  void note_other_attributes(const std::string& of, std::vector<ImportNote>& notes) const;
 
   const tinyxml2::XMLElement* element_;
   const std::string* file_;

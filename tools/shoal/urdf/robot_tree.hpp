@@ -4,27 +4,27 @@
 #include <cstddef>
 #include <vector>
 
-#include "tools/shoal/urdf/urdf_model.hpp"
+#include "tools/shoal/urdf/robot_description.hpp"
 
 namespace tools {
 
 /// A link and the joint that leads to it.
-struct UrdfBranch {
-  const UrdfLink* link = nullptr;
-  const UrdfJoint* joint = nullptr;  ///< null: the root
-  std::size_t parent = 0;            ///< index of the parent's branch
+struct RobotBranch {
+  const RobotLink* link = nullptr;
+  const RobotJoint* joint = nullptr;  ///< null: the root
+  std::size_t parent = 0;             ///< index of the parent's branch
 };
 
 /// Adds the link `world` where a joint has this parent and there is no such link, as in files of Drake.
-void add_world(UrdfRobot& robot);
+void add_world(RobotDescription& robot);
 
 /// Keeps the tree of most links, and adds a note for each other root.
-void drop_unconnected_links(UrdfRobot& robot);
+void drop_unconnected_links(RobotDescription& robot);
 
 /// Checks that names are unique and that the joints connect all links to one tree.  Throws sim::ConfigError.
-void check_urdf_tree(const UrdfRobot& robot);
+void check_tree(const RobotDescription& robot);
 
 /// Links of a checked robot, each after its parent; links of one parent in the order of their joints.
-std::vector<UrdfBranch> branches_of(const UrdfRobot& robot);
+std::vector<RobotBranch> branches_of(const RobotDescription& robot);
 
 }  // namespace tools

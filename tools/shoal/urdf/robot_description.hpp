@@ -12,19 +12,19 @@
 namespace tools {
 
 /// Limits of a URDF file, so that a damaged or hostile one cannot use much time or memory.
-inline constexpr std::size_t max_urdf_bytes = 16u << 20;
-inline constexpr std::size_t max_urdf_links = 2000;
-inline constexpr std::size_t max_urdf_shapes = 20000;
+inline constexpr std::size_t max_robot_file_bytes = 16u << 20;
+inline constexpr std::size_t max_robot_links = 2000;
+inline constexpr std::size_t max_robot_shapes = 20000;
 
 /// `<inertial>`: mass, center of mass and inertia about it.
-struct UrdfInertial {
+struct RobotInertial {
   sim::Pose X_LC = sim::Pose::Identity();  ///< frame of the inertia, at the center of mass, in the link's frame L
   double mass_kg = 0;
   sim::Matrix3d inertia_kgm2 = sim::Matrix3d::Zero();
 };
 
 /// Shape of a `<collision>` or `<visual>`.
-struct UrdfShape {
+struct RobotShape {
   std::string name;
   sim::PartShape shape = sim::PartShape::box;
   sim::Vector3d size_m = sim::Vector3d::Zero();  ///< box
@@ -37,25 +37,25 @@ struct UrdfShape {
   sim::SourcePlace place;
 };
 
-struct UrdfLink {
+struct RobotLink {
   std::string name;
-  std::optional<UrdfInertial> inertial;
-  std::vector<UrdfShape> collisions, visuals;
+  std::optional<RobotInertial> inertial;
+  std::vector<RobotShape> collisions, visuals;
   sim::SourcePlace place;
 };
 
 /// Types of joints.  A floating or planar one can only be that of the root.
-enum class UrdfJointType { fixed, revolute, continuous, prismatic, floating, planar };
+enum class RobotJointType { fixed, revolute, continuous, prismatic, floating, planar };
 
 /// `<mimic>`: position = multiplier * position of another joint + offset.
-struct UrdfMimic {
+struct RobotMimic {
   std::string joint;
   double multiplier = 1, offset = 0;  ///< offset: rad or m
 };
 
-struct UrdfJoint {
+struct RobotJoint {
   std::string name;
-  UrdfJointType type = UrdfJointType::fixed;
+  RobotJointType type = RobotJointType::fixed;
   std::string parent, child;
   sim::Pose X_PJ = sim::Pose::Identity();          ///< frame of the joint and of the child, in the parent's frame
   sim::Vector3d axis_J = sim::Vector3d::UnitX();   ///< unit vector
@@ -64,23 +64,23 @@ struct UrdfJoint {
   std::optional<double> max_acceleration;          ///< rad/s^2 or m/s^2
   std::optional<double> soft_lower, soft_upper;    ///< `<safety_controller>`
   double damping = 0, friction = 0;                ///< N m s/rad or N s/m; N m or N
-  std::optional<UrdfMimic> mimic;
+  std::optional<RobotMimic> mimic;
   sim::SourcePlace place;
 };
 
 /// Note on something that an import leaves out.
-struct UrdfNote {
+struct ImportNote {
   sim::SourcePlace place;
   std::string text;
 };
 
 /// A robot as its URDF describes it.
-struct UrdfRobot {
+struct RobotDescription {
   std::string name;
   std::vector<std::string> comment;  ///< lines of the comments before the root element
-  std::vector<UrdfLink> links;
-  std::vector<UrdfJoint> joints;
-  std::vector<UrdfNote> notes;
+  std::vector<RobotLink> links;
+  std::vector<RobotJoint> joints;
+  std::vector<ImportNote> notes;
 };
 
 }  // namespace tools
