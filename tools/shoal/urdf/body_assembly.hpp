@@ -14,6 +14,7 @@ class BodyAssembly {
   BodyAssembly(std::string name, const sim::Pose& X_VB, const sim::SourcePlace& place);
 
   const std::string& name() const { return body_.name; }
+  const sim::Pose& X_VB() const { return body_.X_VB; }
   /// Adds mass and shapes of a link at X_VL.  A link with collision shapes gives these; another one gives its visual
   /// shapes, which collide with nothing.
   void add(const RobotLink& link, const sim::Pose& X_VL, std::vector<ImportNote>& notes);

@@ -223,6 +223,18 @@ void insert(const std::vector<sim::Vector3d>& points, std::uint32_t point, doubl
 
 }  // namespace
 
+sim::MeshSolid collision_solid(const ImportedBody& body, const std::vector<MeshFile>& meshes) {
+  HullSolids hulls(meshes);
+  return solid_of_body(body, false, hulls);
+}
+
+std::optional<sim::MeshSolid> solid_of_shape(const RobotShape& shape) {
+  if (shape.shape == sim::PartShape::mesh) return std::nullopt;
+  const std::vector<MeshFile> none;
+  HullSolids hulls(none);
+  return solid_of_part(shape, hulls);
+}
+
 std::vector<sim::Vector3d> outermost_points(const std::vector<sim::Vector3d>& points) {
   constexpr int directions = 256;
   std::vector<sim::Vector3d> outwards{sim::Vector3d::UnitX(), sim::Vector3d::UnitY(), sim::Vector3d::UnitZ()};

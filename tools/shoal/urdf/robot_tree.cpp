@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tools/shoal/urdf/robot_tree.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <map>
 #include <set>
@@ -44,6 +46,17 @@ void check_ends(const RobotDescription& robot) {
 }
 
 }  // namespace
+
+void check_counts(const RobotDescription& robot, const sim::SourcePlace& place) {
+  std::size_t shapes = 0;
+  for (const RobotLink& link : robot.links) shapes += link.collisions.size() + link.visuals.size();
+  const auto refuse = [&](const std::string& rule) { sim::throw_config_error(place, "", rule); };
+  if (robot.links.empty()) refuse("a robot needs a <link>");
+  if (robot.links.size() > max_robot_links)
+    refuse(fmt::format("a robot must have at most {} links, got {}", max_robot_links, robot.links.size()));
+  if (shapes > max_robot_shapes)
+    refuse(fmt::format("a robot must have at most {} shapes, got {}", max_robot_shapes, shapes));
+}
 
 void add_world(RobotDescription& robot) {
   const auto is_world = [](const RobotLink& link) { return link.name == "world"; };

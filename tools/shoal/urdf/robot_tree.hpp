@@ -15,6 +15,9 @@ struct RobotBranch {
   std::size_t parent = 0;             ///< index of the parent's branch
 };
 
+/// Checks the numbers of links and shapes.  Throws sim::ConfigError.
+void check_counts(const RobotDescription& robot, const sim::SourcePlace& place);
+
 /// Adds the link `world` where a joint has this parent and there is no such link, as in files of Drake.
 void add_world(RobotDescription& robot);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,11 +20,15 @@ struct RobotImport {
 struct RobotImportOptions {
   Base base = Base::free;
   std::optional<double> density_kgpm3;  ///< of bodies without mass; unset: they are refused
-  MeshOptions meshes;
+  RobotMeshOptions meshes;
   std::string schema;  ///< path of vehicle.schema.json; empty: none
 };
 
 /// Reads a URDF and converts it into a vehicle file.  Throws sim::ConfigError of one line.
 RobotImport import_urdf(const std::string& path, const RobotImportOptions& options);
+
+/// Completes the import of a vehicle: its meshes, the masses that it lacks, what `add_devices` adds, and the text.
+void finish_import(RobotImport& result, const RobotImportOptions& options,
+                   const std::function<void(const std::vector<MeshFile>& meshes)>& add_devices);
 
 }  // namespace tools

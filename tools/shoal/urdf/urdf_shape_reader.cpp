@@ -1,44 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "sim/config/message_text.hpp"
+#include "tools/shoal/urdf/robot_shapes.hpp"
 #include "tools/shoal/urdf/urdf_reader.hpp"
 
 namespace tools {
 
 namespace {
-
-constexpr double min_length_m = 1e-6, max_length_m = 1e7;  // of parts in Shoal
-constexpr double min_mesh_scale = 1e-9;
-
-/// Brings numbers for red, green, blue and opacity into the range from 0 to 1; empty: they are not 3 or 4 numbers.
-std::vector<double> color_numbers(const XmlElement& color, std::vector<ImportNote>& notes) {
-  std::vector<double> rgba = color.any_numbers("rgba");
-  const std::string what =
-      "'rgba' must be four numbers from 0 to 1, got '" + sim::shortened(sim::printable(color.text("rgba"))) + "': ";
-  const bool is_color = rgba.size() == 3 || rgba.size() == 4;
-  const auto outside = [](double value) { return !(value >= 0 && value <= 1); };
-  if (!is_color) {
-    notes.push_back({color.place(), what + "the color is not imported"});
-    return {};
-  }
-  constexpr double surely_of_255 = 2;
-  if (*std::max_element(rgba.begin(), rgba.begin() + 3) > surely_of_255) {
-    notes.push_back({color.place(), what + "it is taken as numbers up to 255"});
-    for (std::size_t i = 0; i < rgba.size(); ++i)
-      if (i < 3 || rgba[i] > 1) rgba[i] /= 255;
-  } else if (std::any_of(rgba.begin(), rgba.end(), outside)) {
-    notes.push_back({color.place(), what + "it is limited to this range"});
-  } else if (rgba.size() == 3) {
-    notes.push_back({color.place(), what + "it is opaque"});
-  }
-  rgba.resize(4, 1);
-  for (double& value : rgba) value = std::clamp(value, 0.0, 1.0);
-  return rgba;
-}
 
 /// Reads the color of a material; empty: it has none.
 std::string read_color(const XmlElement& material, std::vector<ImportNote>& notes) {
@@ -46,44 +15,20 @@ std::string read_color(const XmlElement& material, std::vector<ImportNote>& note
     notes.push_back({material.children("texture").front().place(), "the texture of a material is not imported"});
   const std::vector<XmlElement> colors = material.children("color");
   if (colors.empty()) return "";
-  const std::vector<double> rgba = color_numbers(colors.front(), notes);
-  if (rgba.empty()) return "";
-  if (rgba[3] != 1) notes.push_back({colors.front().place(), "the transparency of a material is not imported"});
-  const auto level = [&](std::size_t i) { return static_cast<int>(std::lround(255 * rgba[i])); };
-  return fmt::format("#{:02x}{:02x}{:02x}", level(0), level(1), level(2));
-}
-
-void check_length(const XmlElement& element, const char* attribute, double value) {
-  if (value < 0) element.refuse(fmt::format("'{}' must be > 0, got {}", attribute, sim::number_text(value)));
-  if (value > max_length_m)
-    element.refuse(fmt::format("'{}' must be at most 1e7 m, got {}", attribute, sim::number_text(value)));
+  const XmlElement& color = colors.front();
+  return color_of(color, "'rgba'", color.text("rgba"), color.any_numbers("rgba"), notes);
 }
 
 double read_length(const XmlElement& element, const char* attribute) {
   const double value = element.number(attribute);
-  check_length(element, attribute, value);
+  check_length(element, fmt::format("'{}'", attribute), value);
   return value;
 }
 
 void read_box(const XmlElement& box, RobotShape& shape) {
   const std::vector<double> size = box.numbers("size", 3);
-  for (const double length : size) check_length(box, "size", length);
+  for (const double length : size) check_length(box, "'size'", length);
   shape.size_m = {size[0], size[1], size[2]};
-}
-
-bool has_volume(const RobotShape& shape) {
-  const auto is_length = [](double value) { return value >= min_length_m; };
-  switch (shape.shape) {
-    case sim::PartShape::box:
-      return is_length(shape.size_m.minCoeff());
-    case sim::PartShape::sphere:
-      return is_length(shape.radius_m);
-    case sim::PartShape::cylinder:
-    case sim::PartShape::capsule:
-      return is_length(shape.radius_m) && is_length(shape.length_m);
-    default:
-      return shape.scale.cwiseAbs().minCoeff() >= min_mesh_scale;
-  }
 }
 
 void read_mesh(const XmlElement& mesh, RobotShape& shape) {
@@ -144,8 +89,7 @@ std::optional<RobotShape> read_urdf_shape(const XmlElement& element, const UrdfC
   shape.X_LS = element.origin();
   read_geometry(element.required_child("geometry"), shape, notes);
   if (!has_volume(shape)) {
-    notes.push_back({shape.place, fmt::format("{}: a <{}> without volume is not imported", element.who(),
-                                              sim::word_of(sim::part_shape_words, shape.shape))});
+    note_no_volume(shape, element.who(), notes);
     return std::nullopt;
   }
   const std::vector<XmlElement> materials = element.children("material");
@@ -169,15 +113,8 @@ std::optional<RobotShape> read_urdf_shape(const XmlElement& element, const UrdfC
 
 std::optional<RobotShape> read_urdf_visual(const XmlElement& element, const UrdfColors& colors,
                                            std::vector<ImportNote>& notes) {
-  try {
-    return read_urdf_shape(element, colors, notes);
-  } catch (const sim::ConfigError& error) {
-    // The error without its place, `FILE:LINE: `.
-    const std::string text = error.what();
-    const std::size_t place = text.find(": ", element.place().file->size());
-    notes.push_back({element.place(), text.substr(place + 2) + ": this <visual> is not imported"});
-    return std::nullopt;
-  }
+  return read_or_note(
+      element, [&] { return read_urdf_shape(element, colors, notes); }, notes);
 }
 
 }  // namespace tools

@@ -5,6 +5,7 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
@@ -43,6 +44,17 @@ std::optional<double> parse_number(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   const auto value = sim::exact_number<double>(word);
   return value && !std::isnan(*value) ? value : std::nullopt;
+}
+
+/// Numbers of a text; none when one of its words is not a finite number of at most 1e9.
+std::vector<double> finite_numbers(std::string_view text) {
+  std::vector<double> parsed;
+  for (const std::string_view word : words_of(text)) {
+    const std::optional<double> number = parse_number(word);
+    if (!number || std::abs(*number) > max_number) return {};
+    parsed.push_back(*number);
+  }
+  return parsed;
 }
 
 std::string shown_text(std::string_view text) {
@@ -140,23 +152,20 @@ std::string XmlElement::text(const char* attribute, const std::string& initial) 
 }
 
 std::vector<double> XmlElement::any_numbers(const char* attribute) const {
-  const std::string value = text(attribute);
-  std::vector<double> parsed;
-  for (const std::string_view word : words_of(value)) {
-    const std::optional<double> number = parse_number(word);
-    if (!number || std::abs(*number) > max_number) return {};
-    parsed.push_back(*number);
-  }
+  return finite_numbers(text(attribute));
+}
+
+std::vector<double> XmlElement::checked_numbers(const std::string& what, const std::string& text,
+                                                std::size_t count) const {
+  const std::vector<double> parsed = finite_numbers(text);
+  if (parsed.size() != count)
+    refuse(fmt::format("{} must be {} between -1e9 and 1e9, got {}", what,
+                       count == 1 ? "a number" : fmt::format("{} numbers", count), shown_text(text)));
   return parsed;
 }
 
 std::vector<double> XmlElement::numbers(const char* attribute, std::size_t count) const {
-  const std::string value = text(attribute);
-  const std::vector<double> parsed = any_numbers(attribute);
-  if (parsed.size() != count)
-    refuse(fmt::format("'{}' must be {} between -1e9 and 1e9, got {}", attribute,
-                       count == 1 ? "a number" : fmt::format("{} numbers", count), shown_text(value)));
-  return parsed;
+  return checked_numbers(fmt::format("'{}'", attribute), text(attribute), count);
 }
 
 double XmlElement::number(const char* attribute) const {
@@ -169,10 +178,13 @@ std::optional<double> XmlElement::optional_number(const char* attribute) const {
 }
 
 double XmlElement::limited_number(const char* attribute) const {
-  const std::string value = text(attribute);
-  const std::vector<std::string_view> words = words_of(value);
+  return limited_number(fmt::format("'{}'", attribute), text(attribute));
+}
+
+double XmlElement::limited_number(const std::string& what, const std::string& text) const {
+  const std::vector<std::string_view> words = words_of(text);
   const std::optional<double> parsed = words.size() == 1 ? parse_number(words[0]) : std::nullopt;
-  if (!parsed) refuse(fmt::format("'{}' must be a number, got {}", attribute, shown_text(value)));
+  if (!parsed) refuse(fmt::format("{} must be a number, got {}", what, shown_text(text)));
   return std::clamp(*parsed, -max_number, max_number);
 }
 
@@ -182,19 +194,68 @@ sim::Vector3d XmlElement::vector(const char* attribute, const sim::Vector3d& ini
   return {xyz[0], xyz[1], xyz[2]};
 }
 
+std::string XmlElement::content() const {
+  const char* const text = element_->GetText();
+  const std::string_view all = text == nullptr ? "" : text;
+  const std::size_t first = all.find_first_not_of(" \t\r\n");
+  return first == all.npos ? "" : std::string(all.substr(first, all.find_last_not_of(" \t\r\n") + 1 - first));
+}
+
+std::vector<double> XmlElement::content_numbers(std::size_t count) const {
+  return checked_numbers(fmt::format("<{}>", name()), content(), count);
+}
+
+std::vector<double> XmlElement::any_content_numbers() const {
+  return finite_numbers(content());
+}
+
+std::optional<double> XmlElement::child_number(std::string_view name) const {
+  const std::optional<XmlElement> found = child(name);
+  return found ? std::optional(found->content_numbers(1).front()) : std::nullopt;
+}
+
+std::optional<double> XmlElement::limited_child_number(std::string_view name) const {
+  const std::optional<XmlElement> found = child(name);
+  if (!found) return std::nullopt;
+  return found->limited_number(fmt::format("<{}>", name), found->content());
+}
+
+std::string XmlElement::child_text(std::string_view name, const std::string& initial) const {
+  const std::optional<XmlElement> found = child(name);
+  return found ? found->content() : initial;
+}
+
+bool XmlElement::child_flag(std::string_view name, bool initial) const {
+  std::string text = child_text(name);
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (text == "true" || text == "1") return true;
+  return text == "false" || text == "0" ? false : initial;
+}
+
+sim::Vector3d XmlElement::child_vector(std::string_view name, const sim::Vector3d& initial) const {
+  const std::optional<XmlElement> found = child(name);
+  if (!found) return initial;
+  const std::vector<double> xyz = found->content_numbers(3);
+  return {xyz[0], xyz[1], xyz[2]};
+}
+
 sim::Pose XmlElement::origin() const {
   const std::optional<XmlElement> origin = child("origin");
   if (!origin) return sim::Pose::Identity();
   const sim::Vector3d xyz = origin->vector("xyz", sim::Vector3d::Zero());
   if (!origin->has("quat_xyzw")) return sim::make_pose(xyz, origin->vector("rpy", sim::Vector3d::Zero()));
   if (origin->has("rpy")) origin->refuse("has 'rpy' and 'quat_xyzw', of which one is enough");
-  const std::vector<double> q = origin->numbers("quat_xyzw", 4);
-  const sim::Quaterniond turn(q[3], q[0], q[1], q[2]);
+  return pose_of_quaternion(*origin, "'quat_xyzw'", xyz, origin->numbers("quat_xyzw", 4));
+}
+
+sim::Pose pose_of_quaternion(const XmlElement& element, const std::string& what, const sim::Vector3d& position_m,
+                             const std::vector<double>& xyzw) {
+  const sim::Quaterniond turn(xyzw[3], xyzw[0], xyzw[1], xyzw[2]);
   if (!(std::abs(turn.norm() - 1) < 0.01))
-    origin->refuse("'quat_xyzw' must have the length 1, got " + sim::number_text(turn.norm()));
+    element.refuse(what + " must have the length 1, got " + sim::number_text(turn.norm()));
   sim::Pose pose = sim::Pose::Identity();
   pose.linear() = turn.normalized().toRotationMatrix();
-  pose.translation() = xyz;
+  pose.translation() = position_m;
   return pose;
 }
 

@@ -46,7 +46,7 @@ TEST(UrdfReader, RefusesWhatIsNotUrdf) {
   EXPECT_EQ(import_error("<robot name=\"r\">\n<link>\n</robot>"), "r.urdf:2: is not well-formed XML");
   EXPECT_EQ(import_error(""), "r.urdf: is not well-formed XML");
   EXPECT_EQ(import_error("\n<sdf version=\"1.6\"/>"),
-            "r.urdf:2: the root element must be <robot>, got <sdf>; this is SDF");
+            "r.urdf:2: the root element must be <robot>, got <sdf>; this is SDF: use `shoal import sdf`");
   EXPECT_EQ(import_error("<mujoco/>"),
             "r.urdf:1: the root element must be <robot>, got <mujoco>; this is a model of MuJoCo");
   EXPECT_EQ(import_error(robot_text("")), "r.urdf:1: a robot needs a <link>");
