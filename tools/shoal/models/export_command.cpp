@@ -32,7 +32,9 @@ int export_vehicle(const ExportArguments& arguments) {
   const sim::VehicleConfig vehicle = sim::load_vehicle(path);
   RobotDescription robot =
       exported_robot(vehicle, masses_of(vehicle), fs::path(arguments.output).parent_path().string());
-  robot.comment = {"Made by `shoal export urdf` from " + sim::printable(fs::path(path).filename().string()) + "."};
+  const std::string source = sim::printable(fs::path(path).filename().string());
+  robot.comment = {"Made by `shoal export urdf` from " +
+                   (source.find("--") == source.npos ? source : "a vehicle file") + "."};
   std::ofstream file(arguments.output, std::ios::binary);
   if (!(file << urdf_text(robot) << std::flush)) throw std::runtime_error(arguments.output + ": cannot be written");
   for (const ImportNote& note : robot.notes) std::cerr << note.place.text() << ": " << note.text << '\n';

@@ -36,7 +36,7 @@ class RobotExport {
  public:
   RobotExport(const sim::VehicleConfig& vehicle, const std::vector<RobotInertial>& masses, const std::string& folder)
       : vehicle_(vehicle), masses_(masses), folder_(folder) {
-    robot_.name = vehicle.vehicle;
+    robot_.name = vehicle.vehicle.empty() ? "vehicle" : vehicle.vehicle;
     for (const sim::PartConfig& part : all_parts()) categories_.insert(part.category);
     for (std::size_t i = 0; i < vehicle.bodies.size(); ++i) numbers_[vehicle.bodies[i].name] = i;
   }
@@ -221,7 +221,7 @@ class RobotExport {
       if (!exported_.contains(device.name))
         note(device.place, fmt::format("device '{}' of type '{}' is not in URDF", device.name, device.type));
     for (const sim::MaterialConfig& material : vehicle_.materials)
-      note(material.place, "material '" + material.name + "': friction and reflection are not in URDF");
+      note(vehicle_.bodies.front().place, "material '" + material.name + "': friction and reflection are not in URDF");
   }
 
   const sim::VehicleConfig& vehicle_;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <stdexcept>
 #include <string>
 
+#include "sim/base/number.hpp"
 #include "tests/tools/shoal/urdf/urdf_texts.hpp"
 #include "tools/shoal/sdf/sdf_import.hpp"
 
@@ -15,7 +17,7 @@ inline std::string sdf_text(const std::string& content, const std::string& versi
 
 inline std::string sdf_mass(double mass_kg, const std::string& moments = "1 1 1", const std::string& pose = "") {
   std::string text = "<inertial>" + (pose.empty() ? "" : "<pose>" + pose + "</pose>") + "<mass>" +
-                     std::to_string(mass_kg) + "</mass><inertia>";
+                     sim::shortest_text(mass_kg) + "</mass><inertia>";
   std::size_t at = 0;
   for (const std::string name : {"ixx", "iyy", "izz"}) {
     const std::size_t end = moments.find(' ', at);
