@@ -67,7 +67,7 @@ class RobotExport {
   }
   void note(const sim::SourcePlace& place, const std::string& text) { robot_.notes.push_back({place, text}); }
 
-  /// Adds a body as a link with a frame of its own.
+  /// Adds a body as a link with its own frame.
   void add_link(const sim::BodyConfig& body, const sim::Pose& X_VL) {
     frames_[body.name] = X_VL;
     const sim::Pose X_LB = X_VL.inverse() * sim::make_pose(body.position_m, body.rpy_rad);
