@@ -11,76 +11,80 @@
 
 namespace tools {
 
-/// Limits of a URDF file, so that a damaged or hostile one cannot use much time or memory.
-inline constexpr std::size_t max_urdf_bytes = 16u << 20;
-inline constexpr std::size_t max_urdf_links = 2000;
-inline constexpr std::size_t max_urdf_shapes = 20000;
+/// Limits of a file, so that a damaged or hostile one cannot use much time or memory.
+inline constexpr std::size_t max_robot_file_bytes = 16u << 20;
+inline constexpr std::size_t max_robot_links = 2000;
+inline constexpr std::size_t max_robot_shapes = 20000;
 
 /// `<inertial>`: mass, center of mass and inertia about it.
-struct UrdfInertial {
+struct RobotInertial {
   sim::Pose X_LC = sim::Pose::Identity();  ///< frame of the inertia, at the center of mass, in the link's frame L
   double mass_kg = 0;
   sim::Matrix3d inertia_kgm2 = sim::Matrix3d::Zero();
 };
 
 /// Shape of a `<collision>` or `<visual>`.
-struct UrdfShape {
+struct RobotShape {
   std::string name;
   sim::PartShape shape = sim::PartShape::box;
   sim::Vector3d size_m = sim::Vector3d::Zero();  ///< box
   double radius_m = 0;                           ///< sphere, cylinder, capsule
   double length_m = 0;                           ///< cylinder, capsule (without its caps)
-  std::string mesh;                              ///< mesh: file as named in the URDF
+  std::string mesh;                              ///< mesh: file as named in the source
   sim::Vector3d scale = sim::Vector3d::Ones();   ///< mesh
   sim::Pose X_LS = sim::Pose::Identity();        ///< in the link's frame
   std::string color;                             ///< `#rrggbb`; empty: none
   sim::SourcePlace place;
 };
 
-struct UrdfLink {
+struct RobotLink {
   std::string name;
-  std::optional<UrdfInertial> inertial;
-  std::vector<UrdfShape> collisions, visuals;
+  std::optional<RobotInertial> inertial;
+  std::vector<RobotShape> collisions, visuals;
   sim::SourcePlace place;
 };
 
-/// Types of joints.  A floating or planar one can only be that of the root.
-enum class UrdfJointType { fixed, revolute, continuous, prismatic, floating, planar };
+/// Types of joints.  A floating or planar one can only be that of the root; only SDF has `ball` and `universal`.
+enum class RobotJointType { fixed, revolute, continuous, prismatic, floating, planar, ball, universal };
 
 /// `<mimic>`: position = multiplier * position of another joint + offset.
-struct UrdfMimic {
+struct RobotMimic {
   std::string joint;
   double multiplier = 1, offset = 0;  ///< offset: rad or m
 };
 
-struct UrdfJoint {
+struct RobotJoint {
   std::string name;
-  UrdfJointType type = UrdfJointType::fixed;
+  RobotJointType type = RobotJointType::fixed;
   std::string parent, child;
-  sim::Pose X_PJ = sim::Pose::Identity();          ///< frame of the joint and of the child, in the parent's frame
+  sim::Pose X_PJ = sim::Pose::Identity();          ///< frame of the child, J, in the parent's frame
+  sim::Vector3d anchor_J = sim::Vector3d::Zero();  ///< point of the joint; in URDF the origin of the child
   sim::Vector3d axis_J = sim::Vector3d::UnitX();   ///< unit vector
+  sim::Vector3d axis2_J = sim::Vector3d::UnitY();  ///< universal: second axis, perpendicular to the first
   std::optional<double> lower, upper;              ///< rad or m
   std::optional<double> max_effort, max_velocity;  ///< N m or N; rad/s or m/s
   std::optional<double> max_acceleration;          ///< rad/s^2 or m/s^2
   std::optional<double> soft_lower, soft_upper;    ///< `<safety_controller>`
   double damping = 0, friction = 0;                ///< N m s/rad or N s/m; N m or N
-  std::optional<UrdfMimic> mimic;
+  std::optional<RobotMimic> mimic;
+  bool has_device = false;  ///< a device that the file describes drives it, such as two wheels; it gets no servo
   sim::SourcePlace place;
 };
 
 /// Note on something that an import leaves out.
-struct UrdfNote {
+struct ImportNote {
   sim::SourcePlace place;
   std::string text;
 };
 
-/// A robot as its URDF describes it.
-struct UrdfRobot {
+/// A robot as its URDF or SDF describes it.
+struct RobotDescription {
   std::string name;
-  std::vector<std::string> comment;  ///< lines of the comments before the root element
-  std::vector<UrdfLink> links;
-  std::vector<UrdfJoint> joints;
-  std::vector<UrdfNote> notes;
+  sim::Pose X_VR = sim::Pose::Identity();  ///< root link in the vehicle's frame
+  std::vector<std::string> comment;        ///< lines of the comments before the root element
+  std::vector<RobotLink> links;
+  std::vector<RobotJoint> joints;
+  std::vector<ImportNote> notes;
 };
 
 }  // namespace tools

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/shoal/urdf/urdf_element.hpp"
+#include "tools/shoal/urdf/xml_element.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -44,19 +44,19 @@ TEST(UrdfReader, RefusesXacroWithAHint) {
 TEST(UrdfReader, DoesNotExpandEntities) {
   const std::string urdf = "<!DOCTYPE robot [<!ENTITY file SYSTEM \"file:///etc/passwd\"> <!ENTITY x \"y\">]>\n" +
                            robot_text(link_text("a&x;&file;b"));
-  const tools::UrdfRobot robot = tools::read_urdf(urdf, "r.urdf");
+  const tools::RobotDescription robot = tools::read_urdf(urdf, "r.urdf");
   EXPECT_EQ(robot.links.at(0).name, "a&x;&file;b");
   ASSERT_EQ(robot.notes.size(), 1u);
   EXPECT_EQ(robot.notes[0].text, "the document type is not read; its entities are not expanded");
 }
 
 TEST(UrdfReader, BoundsSizeDepthAndCounts) {
-  EXPECT_EQ(import_error(std::string(tools::max_urdf_bytes + 1, ' ')), "r.urdf: must be at most 16 MiB");
+  EXPECT_EQ(import_error(std::string(tools::max_robot_file_bytes + 1, ' ')), "r.urdf: must be at most 16 MiB");
   std::string deep;
   for (int i = 0; i < 2000; ++i) deep += "<robot>";
   EXPECT_EQ(import_error(deep), "r.urdf:1: elements are nested too deeply");
   std::string links;
-  for (std::size_t i = 0; i <= tools::max_urdf_links; ++i) links += "<link name=\"l" + std::to_string(i) + "\"/>";
+  for (std::size_t i = 0; i <= tools::max_robot_links; ++i) links += "<link name=\"l" + std::to_string(i) + "\"/>";
   EXPECT_EQ(import_error(robot_text(links)), "r.urdf:1: a robot must have at most 2000 links, got 2001");
 }
 

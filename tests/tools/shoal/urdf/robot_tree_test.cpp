@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tools/shoal/urdf/urdf_tree.hpp"
+#include "tools/shoal/urdf/robot_tree.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
