@@ -49,6 +49,15 @@ void put_no_entity(CdrWriter& out) {
   put_entity(out, 0, three, zero, three, three);
 }
 
+void put_stopped(CdrWriter& out) {
+  out.put(std::uint8_t{stopped});
+}
+
+void put_no_features(CdrWriter& out) {
+  put_lists(out);
+  put_text(out);
+}
+
 /// Where a run is, of the reply `step 100, 1 s, branch 0, paused`.
 struct Place {
   std::int64_t step = 0;
@@ -86,7 +95,7 @@ std::span<const SimServices::Service> SimServices::services() {
 #define SHOAL_SIM_SERVICE(name, type) "shoal/" name, "simulation_interfaces/srv/" type
   static constexpr std::array all{
       Service{SHOAL_SIM_SERVICE("get_simulation_state", "GetSimulationState"), false, &S::get_simulation_state,
-              nullptr},
+              put_stopped},
       Service{SHOAL_SIM_SERVICE("set_simulation_state", "SetSimulationState"), true, &S::set_simulation_state, nullptr},
       Service{SHOAL_SIM_SERVICE("step_simulation", "StepSimulation"), true, &S::step_simulation, nullptr},
       Service{SHOAL_SIM_SERVICE("reset_simulation", "ResetSimulation"), true, &S::reset_simulation, nullptr},
@@ -97,7 +106,7 @@ std::span<const SimServices::Service> SimServices::services() {
       Service{SHOAL_SIM_SERVICE("spawn_entity", "SpawnEntity"), true, &S::spawn_entity, put_text},
       Service{SHOAL_SIM_SERVICE("delete_entity", "DeleteEntity"), true, &S::delete_entity, nullptr},
       Service{SHOAL_SIM_SERVICE("get_simulator_features", "GetSimulatorFeatures"), false, &S::get_simulator_features,
-              nullptr}};
+              put_no_features}};
 #undef SHOAL_SIM_SERVICE
   return all;
 }
@@ -157,15 +166,16 @@ void SimServices::respond(std::uint32_t call, std::uint8_t code, const std::stri
   CdrWriter out(cdr);
   out.put(of.client);
   out.put(of.number);
-  // Two services have something before the result, or none.
+  // Of two services the rest comes before the result, or there is none.
+  const auto put_rest = [&] { rest ? rest(out) : service.rest(out); };
   const bool is_features = service.call == &SimServices::get_simulator_features;
-  if (service.call == &SimServices::get_simulation_state && !rest) out.put(std::uint8_t{stopped});
-  if (rest && (is_features || service.call == &SimServices::get_simulation_state)) rest(out);
+  const bool rest_is_first = is_features || service.call == &SimServices::get_simulation_state;
+  if (rest_is_first) put_rest();
   if (!is_features) {
     out.put(code);
     out.put(std::string_view(error));
   }
-  if (service.rest != nullptr) rest ? rest(out) : service.rest(out);
+  if (!rest_is_first && service.rest != nullptr) put_rest();
   links_.respond(of.service, cdr);
   calls_.erase(found);
 }
