@@ -43,11 +43,11 @@ struct Request {
 /// deliver() encodes it.  A client that does not read loses its oldest messages, and gets a warning with their number.
 class Protocol final : public WebProtocol {
  public:
-  static constexpr std::size_t max_queued_bytes = std::size_t{8} << 20;        ///< that wait for one client
-  static constexpr std::size_t max_queued_messages = 1024;                     ///< that wait for one client
-  static constexpr std::size_t max_latched_bytes = std::size_t{32} << 20;      ///< of latched topics, for one client
-  static constexpr std::size_t max_waiting_requests = 32;                      ///< of one client
-  static constexpr std::size_t max_waiting_texts = 1000;                       ///< answers to one client
+  static constexpr std::size_t max_queued_bytes = std::size_t{8} << 20;    ///< that wait for one client
+  static constexpr std::size_t max_queued_messages = 1024;                 ///< that wait for one client
+  static constexpr std::size_t max_latched_bytes = std::size_t{32} << 20;  ///< of latched topics, for one client
+  static constexpr std::size_t max_waiting_requests = 32;                  ///< of one client
+  static constexpr std::size_t max_waiting_texts = 1000;                   ///< answers to one client
 
   explicit Protocol(WebPost post)
       : exchange_([this](Box box) { deliver(std::move(box)); }, max_waiting_requests, std::move(post)) {}

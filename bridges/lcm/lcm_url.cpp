@@ -156,7 +156,7 @@ void require_tcp_server(const std::string& url, const LcmEndpoint& endpoint) {
   if (fd >= 0) close(fd);
   if (error != 0)
     refuse_url(url, "no LCM server at " + endpoint.address + ":" + port + " (" + std::strerror(error) +
-                        "); start one (java lcm.lcm.TCPService, package liblcm-java) or use udpm://");
+                        "); start one (shoal tcpq) or use udpm://");
 }
 
 void refuse_url(const std::string& url, const std::string& what) {

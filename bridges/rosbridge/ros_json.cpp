@@ -29,10 +29,10 @@ struct KindName {
 };
 
 constexpr std::array kind_names{
-    KindName{"bool", Kind::boolean},    KindName{"byte", Kind::uint8},      KindName{"char", Kind::uint8},
-    KindName{"int8", Kind::int8},       KindName{"uint8", Kind::uint8},     KindName{"int16", Kind::int16},
-    KindName{"uint16", Kind::uint16},   KindName{"int32", Kind::int32},     KindName{"uint32", Kind::uint32},
-    KindName{"int64", Kind::int64},     KindName{"uint64", Kind::uint64},   KindName{"float32", Kind::float32},
+    KindName{"bool", Kind::boolean},    KindName{"byte", Kind::uint8},    KindName{"char", Kind::uint8},
+    KindName{"int8", Kind::int8},       KindName{"uint8", Kind::uint8},   KindName{"int16", Kind::int16},
+    KindName{"uint16", Kind::uint16},   KindName{"int32", Kind::int32},   KindName{"uint32", Kind::uint32},
+    KindName{"int64", Kind::int64},     KindName{"uint64", Kind::uint64}, KindName{"float32", Kind::float32},
     KindName{"float64", Kind::float64}, KindName{"string", Kind::text},
 };
 

@@ -14,7 +14,21 @@ namespace bridges::rosbridge {
 /// Type of ROS 2, read from its `ros2msg` text: what a message in CDR consists of.
 class RosType {
  public:
-  enum class Kind { boolean, int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64, text, compound };
+  enum class Kind {
+    boolean,
+    int8,
+    uint8,
+    int16,
+    uint16,
+    int32,
+    uint32,
+    int64,
+    uint64,
+    float32,
+    float64,
+    text,
+    compound
+  };
   enum class Array { none, fixed, sequence };
   struct Member {
     std::string name;
@@ -46,8 +60,8 @@ class RosType {
 /// Returns the name of a type without `msg`: `sensor_msgs/LaserScan`, which clients of ROS 1 write.
 std::string short_name(std::string_view type);
 
-/// Appends a message in CDR as JSON, as clients of rosbridge expect it: arrays of bytes as text in base64, and `null` for
-/// a number that is not finite.  Returns false, and appends `null`, if the bytes are not of this type.
+/// Appends a message in CDR as JSON, as clients of rosbridge expect it: arrays of bytes as text in base64, and `null`
+/// for a number that is not finite.  Returns false, and appends `null`, if the bytes are not of this type.
 bool append_json(const RosType& type, std::string_view cdr, std::string& text);
 
 /// Largest message that cdr_of_json() makes.

@@ -71,7 +71,8 @@ std::string argument(const Json& args, const char* name) {
   const Json* value = nullptr;
   if (args.is_object() && args.contains(name)) value = &args[name];
   if (args.is_array() && !args.empty()) value = &args.front();
-  if (value == nullptr || !value->is_string()) throw WebError(std::string("the argument '") + name + "' must be a text");
+  if (value == nullptr || !value->is_string())
+    throw WebError(std::string("the argument '") + name + "' must be a text");
   return value->get<std::string>();
 }
 
@@ -87,9 +88,10 @@ int array_length(const RosType::Member& member) {
 }
 
 Json message_details(const Graph& graph, const Json& args) {
-  const std::string type = argument(args, "type");
+  const std::string name = argument(args, "type");
+  const RosType type(name, schema_of(graph, name));
   Json all = Json::array();
-  for (const RosType::Definition& each : RosType(type, schema_of(graph, type)).definitions()) {
+  for (const RosType::Definition& each : type.definitions()) {
     Json names = Json::array(), types = Json::array(), lengths = Json::array(), examples = Json::array();
     for (const RosType::Member& member : each.members) {
       names.push_back(member.name);
@@ -174,20 +176,27 @@ constexpr std::array calls{
          }},
     Call{"message_details", "MessageDetails", message_details},
     Call{"services", "Services",
-         [](const Graph& graph, const Json&) {
-           return services_json(graph, [](const std::string&) { return true; });
-         }},
+         [](const Graph& graph, const Json&) { return services_json(graph, [](const std::string&) { return true; }); }},
     Call{"services_for_type", "ServicesForType",
          [](const Graph& graph, const Json& args) {
-           return services_json(graph, [wanted = argument(args, "type")](const std::string& type) { return type == wanted; });
+           return services_json(graph,
+                                [wanted = argument(args, "type")](const std::string& type) { return type == wanted; });
          }},
     Call{"service_type", "ServiceType", service_type},
-    Call{"nodes", "Nodes", [](const Graph&, const Json&) -> Json { return {{"nodes", nodes_if(true)}}; }},
+    Call{"nodes", "Nodes",
+         [](const Graph&, const Json&) -> Json {
+           return {{"nodes", nodes_if(true)}};
+         }},
     Call{"node_details", "NodeDetails", node_details},
     Call{"get_time", "GetTime", [](const Graph& graph, const Json&) { return time_json(graph.utime); }},
-    Call{"get_param_names", "GetParamNames", [](const Graph&, const Json&) -> Json { return {{"names", Json::array()}}; }},
+    Call{"get_param_names", "GetParamNames",
+         [](const Graph&, const Json&) -> Json {
+           return {{"names", Json::array()}};
+         }},
     Call{"get_ros_version", "GetROSVersion",
-         [](const Graph&, const Json&) -> Json { return {{"version", 2}, {"distro", ""}}; }},
+         [](const Graph&, const Json&) -> Json {
+           return {{"version", 2}, {"distro", ""}};
+         }},
 };
 
 constexpr std::string_view prefix = "/rosapi/";
@@ -226,7 +235,8 @@ bool is_rosapi(std::string_view service) {
 
 Json answer_rosapi(const Graph& graph, std::string_view service, const Json& args) {
   const std::string_view name = service.substr(prefix.size());
-  const auto* const call = std::find_if(calls.begin(), calls.end(), [&](const Call& each) { return each.name == name; });
+  const auto* const call =
+      std::find_if(calls.begin(), calls.end(), [&](const Call& each) { return each.name == name; });
   if (call == calls.end()) throw WebError("there is no service " + std::string(service));
   return call->answer(graph, args);
 }

@@ -20,10 +20,10 @@ struct CommandTopic {
     std::string lcm_type;    ///< of the command that is made of it
     bool unchanged = false;  ///< a missing number means "as before", not 0
   };
-  std::string topic;           ///< such as `/rover1/drive/cmd`
-  std::vector<Type> types;     ///< the first one is listed
-  std::string vehicle;         ///< that is commanded
-  std::string channel;         ///< of the command
+  std::string topic;        ///< such as `/rover1/drive/cmd`
+  std::vector<Type> types;  ///< the first one is listed
+  std::string vehicle;      ///< that is commanded
+  std::string channel;      ///< of the command
 };
 
 /// What clients may ask for.

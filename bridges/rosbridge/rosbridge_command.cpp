@@ -61,7 +61,8 @@ std::vector<CommandTopic> command_topics(const std::string& vehicle, const std::
     if (!topic.types.empty()) topics.push_back(std::move(topic));
   }
   if (!driven.empty())
-    topics.push_back({ros2::topic_of(vehicle) + "/cmd_vel", {{twist_type, std::string(twist_command)}}, vehicle, driven});
+    topics.push_back(
+        {ros2::topic_of(vehicle) + "/cmd_vel", {{twist_type, std::string(twist_command)}}, vehicle, driven});
   return topics;
 }
 

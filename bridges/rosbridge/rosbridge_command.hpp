@@ -21,7 +21,8 @@ inline constexpr const char* twist_type = "geometry_msgs/msg/Twist";
 std::vector<CommandTopic> command_topics(const std::string& vehicle, const std::vector<std::string>& channels,
                                          const std::vector<std::string>& types, bool (*unchanged)(std::string_view));
 
-/// Returns the type of a topic with this name, with or without `msg`; empty: the first.  Throws WebError if it has none.
+/// Returns the type of a topic with this name, with or without `msg`; empty: the first.  Throws WebError if it has
+/// none.
 const CommandTopic::Type& command_type_of(const CommandTopic& topic, std::string_view name);
 
 /// Returns the command that a client's message stands for, as an LCM payload.  Of a Twist, forward_mps is `linear.x`

@@ -17,17 +17,17 @@ enum class Level { error, warning, info, none };
 
 /// Message of a client: the fields that the server understands, by the specification of rosbridge v2.
 struct ClientMessage {
-  std::string op;                    ///< kind, 1 to 64 bytes
-  std::string id;                    ///< text to be returned; empty: none
-  std::string topic;                 ///< with its leading slash
-  std::string type;                  ///< of the topic, without `msg`, such as `sensor_msgs/Imu`; empty: not given
-  std::int64_t throttle_rate_ms = 0; ///< of `subscribe`: least interval of messages
-  std::size_t queue_length = 0;      ///< of `subscribe`: messages that may wait; 0: no limit of its own
-  std::string compression = "none";  ///< of `subscribe`
-  std::string service;               ///< with its leading slash
-  nlohmann::json args;               ///< of `call_service`: an object or a list
-  nlohmann::json msg;                ///< of `publish`: an object
-  Level level = Level::warning;      ///< of `set_level`
+  std::string op;                     ///< kind, 1 to 64 bytes
+  std::string id;                     ///< text to be returned; empty: none
+  std::string topic;                  ///< with its leading slash
+  std::string type;                   ///< of the topic, without `msg`, such as `sensor_msgs/Imu`; empty: not given
+  std::int64_t throttle_rate_ms = 0;  ///< of `subscribe`: least interval of messages
+  std::size_t queue_length = 0;       ///< of `subscribe`: messages that may wait; 0: no limit of its own
+  std::string compression = "none";   ///< of `subscribe`
+  std::string service;                ///< with its leading slash
+  nlohmann::json args;                ///< of `call_service`: an object or a list
+  nlohmann::json msg;                 ///< of `publish`: an object
+  Level level = Level::warning;       ///< of `set_level`
 };
 
 /// Reads a message.  Throws WebError with the key and the rule if it is not a JSON object nested at most 16 deep, or if

@@ -30,8 +30,7 @@ void Protocol::release() {
 }
 
 void Protocol::reply(const Request& request, bool ok, const std::string& text) {
-  std::string answer =
-      service_response_text(request.service, request.id, true, {{"success", ok}, {"message", text}});
+  std::string answer = service_response_text(request.service, request.id, true, {{"success", ok}, {"message", text}});
   exchange_.put([&](Box& box) { box.replies.push_back({request.client, std::move(answer)}); });
 }
 

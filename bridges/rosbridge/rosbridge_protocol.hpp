@@ -28,11 +28,11 @@ struct Request {
   enum class Kind { service, command };
   int client = 0;  ///< number of the connection
   Kind kind = Kind::service;
-  std::string command;      ///< of a service: that of `sim.control`
-  double value = 0;         ///< of the command
-  std::string text;         ///< of the command
-  std::string service, id;  ///< of the call
-  std::string vehicle, channel;      ///< of a command of a vehicle
+  std::string command;             ///< of a service: that of `sim.control`
+  double value = 0;                ///< of the command
+  std::string text;                ///< of the command
+  std::string service, id;         ///< of the call
+  std::string vehicle, channel;    ///< of a command of a vehicle
   std::vector<std::byte> payload;  ///< of it
 };
 

@@ -57,14 +57,16 @@ void Session::subscribe(const ClientMessage& message) {
   if (terms_ >= Protocol::max_subscriptions)
     throw WebError("subscribe: a client has at most " + std::to_string(Protocol::max_subscriptions) + " subscriptions");
   if (message.compression != "none")
-    report(Level::warning, "subscribe " + message.topic + ": compression '" + message.compression +
-                               "' is not supported; the messages come as JSON", message.id);
+    report(Level::warning,
+           "subscribe " + message.topic + ": compression '" + message.compression +
+               "' is not supported; the messages come as JSON",
+           message.id);
   const auto known = subscriptions_.try_emplace(message.topic).first;
   Subscription& subscription = known->second;
   if (!message.type.empty()) subscription.type = message.type;
   terms_ -= subscription.terms.size();
-  subscription.terms.insert_or_assign(
-      message.id, Terms{std::chrono::milliseconds(message.throttle_rate_ms), message.queue_length});
+  subscription.terms.insert_or_assign(message.id,
+                                      Terms{std::chrono::milliseconds(message.throttle_rate_ms), message.queue_length});
   terms_ += subscription.terms.size();
   set_terms(subscription);
   const auto& topics = protocol_.topics_.topics();
@@ -242,7 +244,8 @@ void Session::queue(Subscription& subscription, const Bytes& cdr) {
 
 Session::Data Session::take_first() {
   Data data = data_.pop();
-  if (const auto of = by_topic_.find(data.topic); of != by_topic_.end() && of->second->waiting > 0) --of->second->waiting;
+  if (const auto of = by_topic_.find(data.topic); of != by_topic_.end() && of->second->waiting > 0)
+    --of->second->waiting;
   return data;
 }
 
@@ -288,8 +291,9 @@ std::string Session::next_drop_report() {
   const Clock::time_point now = Clock::now();
   if (now < next_drop_report_) return "";
   next_drop_report_ = now + interval;
-  return status_text(Level::warning, std::to_string(std::exchange(dropped_, 0)) +
-                                         " messages were dropped, because they come faster than this client reads them");
+  return status_text(Level::warning,
+                     std::to_string(std::exchange(dropped_, 0)) +
+                         " messages were dropped, because they come faster than this client reads them");
 }
 
 }  // namespace bridges::rosbridge

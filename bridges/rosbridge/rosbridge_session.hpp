@@ -47,9 +47,9 @@ class Session final : public WebSession, public ros2::TopicReader {
     bool bound = false;                  ///< there is such a topic
     std::size_t topic = 0;
     Terms effective;
-    Clock::time_point due{};    ///< of the next message
-    std::deque<Bytes> held;     ///< until they are due
-    std::size_t waiting = 0;    ///< messages in data_
+    Clock::time_point due{};  ///< of the next message
+    std::deque<Bytes> held;   ///< until they are due
+    std::size_t waiting = 0;  ///< messages in data_
   };
   using Subscriptions = std::map<std::string, Subscription, std::less<>>;
 
@@ -82,10 +82,10 @@ class Session final : public WebSession, public ros2::TopicReader {
   WebLink& link_;
   bool closing_ = false;
   Level level_ = Level::warning;
-  Subscriptions subscriptions_;                        // by name
+  Subscriptions subscriptions_;  // by name
   std::map<std::size_t, Subscription*> by_topic_;
-  std::size_t bound_ = 0;  // topics that bind_new_topics() has seen
-  std::size_t terms_ = 0;  // of all subscriptions
+  std::size_t bound_ = 0;                          // topics that bind_new_topics() has seen
+  std::size_t terms_ = 0;                          // of all subscriptions
   std::map<std::string, std::string> advertised_;  // type by topic
   WebQueue<std::string> answers_;
   WebQueue<Data> data_;

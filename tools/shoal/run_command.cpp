@@ -246,22 +246,22 @@ static void add_run_command(CLI::App& app, int& exit_code) {
   add_plugin_option(*command);
   // End of the help and action.
   command_line::set_help_end(
-      *command,
-      {{"shoal run worlds/minimal.yaml --duration 10 --speed 1",
-        "shoal run worlds/coop_land.yaml --launch --results results/coop_land --record coop.lcm",
-        "shoal run worlds/coop_underwater.yaml --launch --view",
-        "shoal run worlds/minimal.yaml --rosbridge-control --view-port 9090", "shoal run my_world.yaml --bus none --view --watch",
-        "shoal run worlds/coop_land.yaml --duration 20 --snapshot-at 10 --snapshots snaps",
-        "shoal run --from snaps/branch0_step1000.snapshot --set vehicles.rover3.devices.lidar.rate_hz=5",
-        "shoal run worlds/coop_land.yaml --seed 7 --set vehicles.rover3.devices.modem.loss_probability=0.2"},
-       {{0, "the run ended; no rule of the world failed"},
-        {1, "a rule of the world or one of its programs failed"},
-        {2, "wrong usage, or a mistake in the world"},
-        {3, "physics fault"},
-        {4, "bus or file error"},
-        {5, "a lockstep client did not join or answer in time, or a step took longer than 'limits' allows"},
-        {129, "ended by SIGHUP; 130 by SIGINT; 143 by SIGTERM"}},
-       {}});
+      *command, {{"shoal run worlds/minimal.yaml --duration 10 --speed 1",
+                  "shoal run worlds/coop_land.yaml --launch --results results/coop_land --record coop.lcm",
+                  "shoal run worlds/coop_underwater.yaml --launch --view",
+                  "shoal run worlds/minimal.yaml --rosbridge-control --view-port 9090",
+                  "shoal run my_world.yaml --bus none --view --watch",
+                  "shoal run worlds/coop_land.yaml --duration 20 --snapshot-at 10 --snapshots snaps",
+                  "shoal run --from snaps/branch0_step1000.snapshot --set vehicles.rover3.devices.lidar.rate_hz=5",
+                  "shoal run worlds/coop_land.yaml --seed 7 --set vehicles.rover3.devices.modem.loss_probability=0.2"},
+                 {{0, "the run ended; no rule of the world failed"},
+                  {1, "a rule of the world or one of its programs failed"},
+                  {2, "wrong usage, or a mistake in the world"},
+                  {3, "physics fault"},
+                  {4, "bus or file error"},
+                  {5, "a lockstep client did not join or answer in time, or a step took longer than 'limits' allows"},
+                  {129, "ended by SIGHUP; 130 by SIGINT; 143 by SIGTERM"}},
+                 {}});
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

@@ -13,9 +13,14 @@ using bridges::bytes_of_base64;
 
 TEST(Base64, IsThatOfRfc4648) {
   // The test vectors of section 10, and the two last digits.
-  const std::vector<std::pair<std::string, std::string>> pairs{
-      {"", ""},         {"f", "Zg=="},        {"fo", "Zm8="},         {"foo", "Zm9v"},
-      {"foob", "Zm9vYg=="}, {"fooba", "Zm9vYmE="}, {"foobar", "Zm9vYmFy"}, {"\xff\xff\xfe", "///+"}};
+  const std::vector<std::pair<std::string, std::string>> pairs{{"", ""},
+                                                               {"f", "Zg=="},
+                                                               {"fo", "Zm8="},
+                                                               {"foo", "Zm9v"},
+                                                               {"foob", "Zm9vYg=="},
+                                                               {"fooba", "Zm9vYmE="},
+                                                               {"foobar", "Zm9vYmFy"},
+                                                               {"\xff\xff\xfe", "///+"}};
   for (const auto& [bytes, text] : pairs) {
     EXPECT_EQ(base64(bytes), text);
     EXPECT_EQ(bytes_of_base64(text), bytes);

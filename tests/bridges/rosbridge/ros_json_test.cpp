@@ -73,9 +73,8 @@ TEST(RosJson, WritesAMessageAsClientsOfRosbridgeExpectIt) {
   out.put(-std::numeric_limits<float>::infinity());
   out.put(std::uint8_t{1});
   out.put(std::numeric_limits<std::uint64_t>::max());
-  EXPECT_EQ(json_of(mixed(), cdr),
-            R"({"small":-3,"real":null,"data":"Zm9v","pair":"Zm8=","names":["a\"b",""],)"
-            R"("points":[{"x":0.1},{"x":null}],"flag":true,"large":18446744073709551615})");
+  EXPECT_EQ(json_of(mixed(), cdr), R"({"small":-3,"real":null,"data":"Zm9v","pair":"Zm8=","names":["a\"b",""],)"
+                                   R"("points":[{"x":0.1},{"x":null}],"flag":true,"large":18446744073709551615})");
 }
 
 TEST(RosJson, AMessageOfAClientComesBackAsItWas) {

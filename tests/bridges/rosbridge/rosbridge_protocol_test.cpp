@@ -73,8 +73,8 @@ class RosbridgeProtocolTest : public testing::Test {
  protected:
   explicit RosbridgeProtocolTest(bool may_control = false)
       : protocol_([this](std::function<void()> work) { posted_.push_back(std::move(work)); }, may_control) {
-    protocol_.set_commands(command_topics("r1", {"r1.drive.cmd"}, {"shoal.twist_command_t"},
-                                          [](std::string_view) { return false; }));
+    protocol_.set_commands(
+        command_topics("r1", {"r1.drive.cmd"}, {"shoal.twist_command_t"}, [](std::string_view) { return false; }));
     run();
   }
   void run() {
@@ -235,8 +235,10 @@ TEST_F(RosbridgeProtocolTest, RosapiKnowsTopicsTypesServicesAndTheNode) {
   EXPECT_THAT(topics["values"]["topics"].get<std::vector<std::string>>(),
               testing::IsSupersetOf({"/r1/gps", "/r1/gps/fix", "/r1/cmd_vel", "/r1/drive/cmd"}));
   EXPECT_EQ(topics["values"]["topics"].size(), topics["values"]["types"].size());
-  EXPECT_EQ(client.call("rosapi/topic_type", {{"topic", "/r1/gps/fix"}})["values"]["type"], "sensor_msgs/msg/NavSatFix");
-  EXPECT_EQ(client.call("/rosapi/topic_type", Json::array({"/r1/cmd_vel"}))["values"]["type"], "geometry_msgs/msg/Twist");
+  EXPECT_EQ(client.call("rosapi/topic_type", {{"topic", "/r1/gps/fix"}})["values"]["type"],
+            "sensor_msgs/msg/NavSatFix");
+  EXPECT_EQ(client.call("/rosapi/topic_type", Json::array({"/r1/cmd_vel"}))["values"]["type"],
+            "geometry_msgs/msg/Twist");
   EXPECT_EQ(client.call("/rosapi/topics_for_type", {{"type", "sensor_msgs/NavSatFix"}})["values"]["topics"],
             Json::array({"/r1/gps/fix"}));
   EXPECT_EQ(client.call("/rosapi/nodes")["values"]["nodes"], Json::array({"/shoal"}));
