@@ -183,6 +183,15 @@ TEST_F(TcpqServerTest, ForeignBytesEndTheirConnectionWithTheReason) {
   }
 }
 
+TEST_F(TcpqServerTest, LiblcmGetsTheNumericAddressOfAName) {
+  serve();
+  const std::string port = std::to_string(server_->port());
+  EXPECT_EQ(require_tcp_server("", {"tcpq", "localhost", server_->port()}), "tcpq://127.0.0.1:" + port);
+  LcmListener client("tcpq://localhost:" + port);
+  client.listen("a");
+  await_subscription(client, "a");
+}
+
 TEST_F(TcpqServerTest, TooManyClientsAreRefused) {
   TcpqServer::Options options;
   options.max_clients = 1;
