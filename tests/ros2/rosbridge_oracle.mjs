@@ -139,6 +139,23 @@ function cpu_s(pid) {
   return (Number(fields[11]) + Number(fields[12])) / 100;
 }
 
+/** Time from a call to its answer, both ways through the server and roslib, ms: the median, and of 99 %. */
+async function measureLatency() {
+  const server = await new Server(shoal, ["run", world, "--rosbridge", "--speed", "1", ...alone]).open();
+  const ros = await connect(server.port);
+  const time = new roslib.Service({ ros, name: "/rosapi/get_time", serviceType: "rosapi_msgs/GetTime" });
+  const times = [];
+  for (let i = 0; i < 3000; ++i) {
+    const begin = performance.now();
+    await promised((ok, failed) => time.callService(new roslib.ServiceRequest({}), ok, failed));
+    times.push(performance.now() - begin);
+  }
+  ros.close();
+  await server.end();
+  times.sort((a, b) => a - b);
+  return `round trip ${times[1500].toFixed(3)} ms, of 99 % ${times[2970].toFixed(3)} ms`;
+}
+
 /** Cost of a client that reads all but images and clouds; in parentheses the same run without a client. */
 async function measure() {
   const seconds = 10;
@@ -172,7 +189,7 @@ async function measure() {
 
 let failed = 0;
 const steps = [["topics", checkTopics], ["control", checkControl]];
-if (many !== undefined) steps.push(["cost", measure]);
+if (many !== undefined) steps.push(["latency", measureLatency], ["cost", measure]);
 try {
   for (const [name, test] of steps) {
     const started = Date.now();
