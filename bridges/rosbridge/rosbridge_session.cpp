@@ -16,6 +16,12 @@ constexpr std::string_view control_is_off = "control is off: start Shoal with --
 /// Overhead of a message besides its payload.
 constexpr std::size_t message_bytes = 100;
 
+/// `type`: demanded by a client; empty: any.
+void require_type(const ros2::Topic& topic, const std::string& type) {
+  if (!type.empty() && type != short_name(topic.type))
+    throw WebError("subscribe " + topic.name + ": its type is " + topic.type + ", not " + type);
+}
+
 }  // namespace
 
 Session::~Session() {
@@ -61,6 +67,10 @@ void Session::subscribe(const ClientMessage& message) {
            "subscribe " + message.topic + ": compression '" + message.compression +
                "' is not supported; the messages come as JSON",
            message.id);
+  const auto& topics = protocol_.topics_.topics();
+  const auto topic =
+      std::find_if(topics.begin(), topics.end(), [&](const ros2::Topic& each) { return each.name == message.topic; });
+  if (topic != topics.end()) require_type(*topic, message.type);
   const auto known = subscriptions_.try_emplace(message.topic).first;
   Subscription& subscription = known->second;
   if (!message.type.empty()) subscription.type = message.type;
@@ -69,9 +79,6 @@ void Session::subscribe(const ClientMessage& message) {
                                       Terms{std::chrono::milliseconds(message.throttle_rate_ms), message.queue_length});
   terms_ += subscription.terms.size();
   set_terms(subscription);
-  const auto& topics = protocol_.topics_.topics();
-  const auto topic =
-      std::find_if(topics.begin(), topics.end(), [&](const ros2::Topic& each) { return each.name == message.topic; });
   if (!subscription.bound && topic != topics.end()) bind(known, topic->number);
 }
 
@@ -108,8 +115,10 @@ void Session::bind(Subscriptions::iterator known, std::size_t topic) {
   Subscription& subscription = known->second;
   const ros2::Topic& found = protocol_.topics_.topics()[topic];
   if (found.encoding != "cdr") return;
-  if (!subscription.type.empty() && subscription.type != short_name(found.type)) {
-    report(Level::error, "subscribe " + found.name + ": its type is " + found.type + ", not " + subscription.type);
+  try {
+    require_type(found, subscription.type);
+  } catch (const WebError& error) {
+    report(Level::error, error.what());
     return end(known);
   }
   subscription.bound = true;

@@ -19,7 +19,8 @@ async function connect(port, path = "") {
   const ros = new roslib.Ros({ url: `ws://127.0.0.1:${port}${path}` });
   ros.statuses = [];
   ros.on("error", (error) => (ros.failed = error));
-  ros.on("status", (status) => ros.statuses.push(status));
+  // An answer to a message with an id is an event of its own.
+  ros.onAny((event, status) => String(event).startsWith("status") && ros.statuses.push(status));
   await until(() => ros.isConnected || ros.failed, "connection");
   check(ros.isConnected, `connected: ${ros.failed?.message}`);
   return ros;
@@ -104,13 +105,17 @@ async function checkControl() {
   await until(() => odometry.last, "odometry");
   const drive = topic(ros, "/rover1/cmd_vel", "geometry_msgs/Twist");
   drive.advertise();
-  drive.publish(new roslib.Message({ linear: { x: 0.5, y: 0, z: 0 }, angular: { x: 0, y: 0, z: 0.4 } }));
+  const twist = new roslib.Message({ linear: { x: 0.5, y: 0, z: 0 }, angular: { x: 0, y: 0, z: 0.4 } });
+  const drives = setInterval(() => drive.publish(twist), 100);
   await until(() => odometry.last.twist.twist.angular.z > 0.2, "a turn to the left");
   await until(() => odometry.last.pose.pose.position.x > 0.1, "a way ahead");
+  clearInterval(drives);
   // The own type of the device
   const command = topic(ros, "/rover1/drive/cmd", "shoal_msgs/msg/TwistCommand");
-  command.publish(new roslib.Message({ forward_mps: -0.5 }));
-  await until(() => odometry.last.twist.twist.linear.x < -0.2, "a way back");
+  const backs = setInterval(() => command.publish(new roslib.Message({ forward_mps: -0.5 })), 100);
+  const farthest = odometry.last.pose.pose.position.x;
+  await until(() => odometry.last.pose.pose.position.x < farthest - 0.1, "a way back");
+  clearInterval(backs);
   // A service of the run
   const call = (name, request) =>
     promised((ok, failed) =>

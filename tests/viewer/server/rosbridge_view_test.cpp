@@ -30,7 +30,7 @@ class RosbridgeRun {
     view_.port = 0;
     view_.rosbridge = true;
     view_.rosbridge_control = may_control;
-    view_.token = "secret";
+    view_.token = "secretsecretsecret";
     options_.page = viewer::run_page(view_);
     std::promise<std::string> url;
     auto opened = url.get_future();
@@ -47,7 +47,7 @@ class RosbridgeRun {
     if (!thread_.joinable()) return;
     web_test::Client page(port);
     page.upgrade();
-    page.send_json({{"op", "hello"}, {"token", "secret"}});
+    page.send_json({{"op", "hello"}, {"token", "secretsecretsecret"}});
     page.send_json({{"op", "control"}, {"id", 1}, {"command", "resume"}});
     thread_.join();
   }
