@@ -21,15 +21,15 @@ void stop_serving(int /*signal*/) {
 }
 
 int serve(const bridges::TcpqServer::Options& options) {
-  bridges::TcpqServer server(options, [](const std::string& line) { sim::log_warning(line); });
+  bridges::TcpqServer server(options, [](const std::string& line) { sim::log_warn("{}", line); });
   served = &server;
   struct sigaction action {};
   action.sa_handler = stop_serving;
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaction(signal, &action, nullptr);
   std::cout << "LCM server: tcpq://" << options.host << ':' << server.port() << std::endl;
   if (!options.host.starts_with("127."))
-    sim::log_warning("every program that reaches " + options.host +
-                     " can publish on this bus; a run on it is controlled with its key only");
+    sim::log_warn("every program that reaches {} can publish on this bus; a run on it is controlled with its key only",
+                  options.host);
   server.run();
   std::cout << server.messages() << " messages\n";
   return exit_ok;
