@@ -37,10 +37,11 @@ void report_helpers() {
             << experiment::install_command(missing, release) << '\n';
 }
 
-int examine(const std::string& url) {
+/// Prints findings and their remedies; returns whether none is bad.
+bool report(const std::vector<bridges::Finding>& findings) {
   bool usable = true;
   std::vector<std::string> commands;
-  for (const bridges::Finding& finding : bridges::check_network(url)) {
+  for (const bridges::Finding& finding : findings) {
     std::cout << word(finding.verdict) << finding.name << ": " << finding.text << '\n';
     usable = usable && finding.verdict != bridges::Finding::Verdict::bad;
     // Several findings may have the same remedy.
@@ -49,6 +50,12 @@ int examine(const std::string& url) {
   }
   if (!commands.empty()) std::cout << "\nTo fix it, run as root:\n";
   for (const std::string& command : commands) std::cout << "  " << command << '\n';
+  return usable;
+}
+
+int examine(const std::string& url, const std::string& peer) {
+  if (!peer.empty()) return report(bridges::check_peer(peer, url)) ? exit_ok : exit_bus;
+  const bool usable = report(bridges::check_network(url));
   report_helpers();
   std::cout << (usable ? "\nLCM is usable here.\n" : "\nLCM is not usable here.\n");
   return usable ? exit_ok : exit_bus;
@@ -58,11 +65,16 @@ int examine(const std::string& url) {
 
 static void add_doctor_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.get_subcommand("doctor");
-  const auto url = std::make_shared<std::string>();
+  const auto url = std::make_shared<std::string>(), peer = std::make_shared<std::string>();
   add_log_level_option(*command);
   add_lcm_url_option(*command, *url);
-  command_line::set_help_end(*command, {{"shoal doctor"}, {{0, "usable"}, {2, "wrong usage"}, {4, "not usable"}}, {}});
-  command->callback([url, &exit_code] { exit_code = examine(*url); });
+  command->add_option("--peer", *peer, "check what reaches another machine, on which the same runs, instead")
+      ->type_name("HOST");
+  command_line::set_help_end(*command, {{"shoal doctor", "shoal doctor --peer 192.168.1.7",
+                                         "shoal doctor --peer 192.168.1.7 --lcm-url udpm://239.255.76.67:7667?ttl=1"},
+                                        {{0, "usable"}, {2, "wrong usage"}, {4, "not usable"}},
+                                        {}});
+  command->callback([url, peer, &exit_code] { exit_code = examine(*url, *peer); });
 }
 
 SHOAL_COMMAND(connect, "doctor", "Check LCM and helper programs on this machine, and print how to fix them",
