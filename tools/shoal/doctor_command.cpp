@@ -1,11 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fcntl.h>
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
 #include <memory>
 
 #include "bridges/base/child_program.hpp"
+#include "bridges/base/file_descriptor.hpp"
 #include "bridges/bus/network_check.hpp"
 #include "experiment/process/helper_programs.hpp"
 #include "tools/shoal/commands/commands.hpp"
@@ -14,15 +23,36 @@ namespace tools {
 
 namespace {
 
-const char* word(bridges::Finding::Verdict verdict) {
+using Verdict = bridges::Finding::Verdict;
+
+const char* word(Verdict verdict) {
   switch (verdict) {
-    case bridges::Finding::Verdict::ok:
+    case Verdict::ok:
       return "ok      ";
-    case bridges::Finding::Verdict::warning:
+    case Verdict::warning:
       return "warning ";
     default:
       return "BAD     ";
   }
+}
+
+constexpr std::uintmax_t least_free_bytes = 1'000'000'000;  // a record of an hour, plots and a film
+
+/// Checks whether results can be written to the current folder: makes a file there, and removes it.
+bridges::Finding check_folder() {
+  std::string probe = ".shoal-doctor-XXXXXX";
+  const bridges::FileDescriptor file(mkostemp(probe.data(), O_CLOEXEC));
+  const int reason = errno;
+  std::error_code error;
+  const std::string here = std::filesystem::current_path(error).string();
+  const std::string elsewhere = "choose another folder with --results";
+  if (file.number() < 0)
+    return {"folder", Verdict::warning, here + " cannot be written: " + std::strerror(reason) + "; " + elsewhere, {}};
+  std::filesystem::remove(probe, error);
+  const std::uintmax_t free_bytes = std::filesystem::space(".", error).available;
+  const std::string text = fmt::format("{} has {:.1f} GB free", here, static_cast<double>(free_bytes) * 1e-9);
+  if (error || free_bytes >= least_free_bytes) return {"folder", Verdict::ok, text, {}};
+  return {"folder", Verdict::warning, text + "; free some space, or " + elsewhere, {}};
 }
 
 /// Prints which programs of others are missing, and how to install them.
@@ -40,9 +70,11 @@ void report_helpers() {
 int examine(const std::string& url) {
   bool usable = true;
   std::vector<std::string> commands;
-  for (const bridges::Finding& finding : bridges::check_network(url)) {
+  std::vector<bridges::Finding> findings = bridges::check_network(url);
+  findings.push_back(check_folder());
+  for (const bridges::Finding& finding : findings) {
     std::cout << word(finding.verdict) << finding.name << ": " << finding.text << '\n';
-    usable = usable && finding.verdict != bridges::Finding::Verdict::bad;
+    usable = usable && finding.verdict != Verdict::bad;
     // Several findings may have the same remedy.
     for (const std::string& each : finding.commands)
       if (std::find(commands.begin(), commands.end(), each) == commands.end()) commands.push_back(each);
@@ -65,7 +97,7 @@ static void add_doctor_command(CLI::App& app, int& exit_code) {
   command->callback([url, &exit_code] { exit_code = examine(*url); });
 }
 
-SHOAL_COMMAND(connect, "doctor", "Check LCM and helper programs on this machine, and print how to fix them",
+SHOAL_COMMAND(connect, "doctor", "Check network, folder and helper programs of this machine, and print how to fix them",
               add_doctor_command);
 
 }  // namespace tools
