@@ -156,7 +156,8 @@ TEST(LcmTools, DoctorSaysThatLcmIsUsableHere) {
 TEST(LcmTools, DoctorSaysThatTheFolderCannotBeWritten) {
   Program doctor({"env", "-C", "/proc", built("shoal"), "doctor", "--lcm-url", own_url()});
   EXPECT_EQ(doctor.wait(), 0) << doctor.output();
-  EXPECT_THAT(doctor.output(), testing::ContainsRegex("warning folder: /proc cannot be written: .*; choose another folder"));
+  EXPECT_THAT(doctor.output(),
+              testing::ContainsRegex("warning folder: /proc cannot be written: .*; choose another folder"));
 }
 
 TEST(LcmTools, DoctorSaysThatTheDiskIsFull) {

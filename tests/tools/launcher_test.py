@@ -55,16 +55,17 @@ class Launcher(unittest.TestCase):
     def test_another_processor_or_c_library(self):
         self.launch_with(loader="/nowhere/ld.so")
         self.assertEqual(self.run_shoal(), "shoal: this is the Shoal of z80 with glibc, but here is "
-                         f"{os.uname().machine}, or another C library: take the tarball of your processor, or the image "
-                         "if your system has no glibc\n")
+                         f"{os.uname().machine}, or another C library: take the tarball of your processor, or the "
+                         "image if your system has no glibc\n")
 
     def test_an_old_c_library(self):
-        self.write("libraries", "shoal.bin: /lib/libc.so.6: version `GLIBC_2.36' not found (required by shoal.bin)\n" + FOUND)
+        self.write("libraries", "shoal.bin: /lib/libc.so.6: version `GLIBC_2.36' not found (required by it)\n" + FOUND)
         self.assertEqual(self.run_shoal(), "shoal: this system is too old, Shoal needs glibc 2.36, GLIBCXX 3.4.30 or "
                          "newer: use the image of Shoal in a container\n")
 
     def test_a_missing_library_is_named(self):
-        self.write("libraries", FOUND.replace("/lib/libstdc++.so.6 (0x00007f)", "not found"))
+        self.write("libraries", "shoal.bin: error while loading shared libraries: libstdc++.so.6: cannot open shared "
+                   "object file: No such file or directory\n")
         self.assertEqual(self.run_shoal(), "shoal: libstdc++.so.6 is missing: install it, as root: apt-get install "
                          "libstdc++6, or dnf install libstdc++\n")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""tools/release refuses a tag that does not fit, and publishes files with their checksums; the jobs only run scripts."""
+"""tools/release refuses a tag that does not fit, and publishes files with their checksums; jobs only run scripts."""
 import glob
 import hashlib
 import os
@@ -85,8 +85,8 @@ class Release(unittest.TestCase):
             self.assertEqual(file.read(), hashlib.sha256(b"wheel").hexdigest() + "  shoal.whl\n")
         with open(self.call, encoding="utf-8") as file:
             self.assertEqual(file.read().split("\n"),
-                             ["release", "create", "v1.2.3", "--verify-tag", "--title", "Shoal 1.2.3", "--notes-file", "-",
-                              "build/attached/SHA256SUMS", "build/attached/shoal.whl", "", "- New.", "", ""])
+                             ["release", "create", "v1.2.3", "--verify-tag", "--title", "Shoal 1.2.3", "--notes-file",
+                              "-", "build/attached/SHA256SUMS", "build/attached/shoal.whl", "", "- New.", "", ""])
 
     def test_nothing_is_published_for_a_wrong_tag(self):
         self.write("build/attached/shoal.whl", "wheel")

@@ -19,8 +19,9 @@ TEST(HelperPrograms, ThoseThatAreThereAreNotMissing) {
 }
 
 TEST(HelperPrograms, DebianAndUbuntuInstallThemByAptFromPackagesOfTheSameNames) {
-  for (const char* release : {"ID=debian\nVERSION_ID=\"12\"\n", "PRETTY_NAME=\"Debian\"\nID=debian\nVERSION_ID=\"13\"\n",
-                              "ID=ubuntu\nID_LIKE=debian\nVERSION_ID=\"24.04\"\n"})
+  for (const char* release :
+       {"ID=debian\nVERSION_ID=\"12\"\n", "PRETTY_NAME=\"Debian\"\nID=debian\nVERSION_ID=\"13\"\n",
+        "ID=ubuntu\nID_LIKE=debian\nVERSION_ID=\"24.04\"\n"})
     EXPECT_EQ(experiment::install_command(all(), release),
               "apt-get install iproute2 gnuplot-nox ffmpeg python3 parallel slurm-client");
   EXPECT_THAT(experiment::install_command(all(), "ID=linuxmint\nID_LIKE=\"ubuntu debian\"\n"),
