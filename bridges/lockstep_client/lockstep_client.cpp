@@ -32,6 +32,8 @@ constexpr milliseconds slice{50};
 constexpr int max_requests = 20;
 /// Maximum wait for the confirmation of a leave.
 constexpr milliseconds time_to_leave{1000};
+/// Maximum wait for the messages of a last tick: the simulator may have ended, and answers no more.
+constexpr milliseconds time_to_end{5000};
 
 /// Decodes a message; none when the payload is not a valid M, which any program may publish.
 template <class M>
@@ -396,13 +398,16 @@ bool LockstepClient::next_tick(shoal::sim_tick_t& tick) {
     }
     // Request missing messages, and wait for the next message.
     if (incomplete_) request_when_due();
-    const bool forever = silence_limit_.count() == 0;
-    auto until = forever ? Clock::time_point::max() : received + silence_limit_;
+    milliseconds limit = silence_limit_;
+    if (is_last_tick()) limit = limit.count() == 0 ? time_to_end : std::min(limit, time_to_end);
+    const bool forever = limit.count() == 0;
+    auto until = forever ? Clock::time_point::max() : received + limit;
     if (incomplete_) until = std::min(until, incomplete_->ask_at);
     if (auto message = wait(until)) {
-      received = Clock::now();
+      // Its own requests for missing messages come back from the network.
+      if (message->channel != question_channel) received = Clock::now();
       take(std::move(*message));
-    } else if (!stop_ && !forever && Clock::now() >= received + silence_limit_) {
+    } else if (!stop_ && !forever && Clock::now() >= received + limit) {
       end_ = End::silence;
       return false;
     }

@@ -23,13 +23,11 @@ namespace tools {
 
 namespace {
 
-using Verdict = bridges::Finding::Verdict;
-
-const char* word(Verdict verdict) {
+const char* word(bridges::Finding::Verdict verdict) {
   switch (verdict) {
-    case Verdict::ok:
+    case bridges::Finding::Verdict::ok:
       return "ok      ";
-    case Verdict::warning:
+    case bridges::Finding::Verdict::warning:
       return "warning ";
     default:
       return "BAD     ";
@@ -40,6 +38,7 @@ constexpr std::uintmax_t least_free_bytes = 1'000'000'000;  // a record of an ho
 
 /// Checks whether results can be written to the current folder: makes a file there, and removes it.
 bridges::Finding check_folder() {
+  using Verdict = bridges::Finding::Verdict;
   std::string probe = ".shoal-doctor-XXXXXX";
   const bridges::FileDescriptor file(mkostemp(probe.data(), O_CLOEXEC));
   const int reason = errno;
@@ -74,7 +73,7 @@ int examine(const std::string& url) {
   findings.push_back(check_folder());
   for (const bridges::Finding& finding : findings) {
     std::cout << word(finding.verdict) << finding.name << ": " << finding.text << '\n';
-    usable = usable && finding.verdict != Verdict::bad;
+    usable = usable && finding.verdict != bridges::Finding::Verdict::bad;
     // Several findings may have the same remedy.
     for (const std::string& each : finding.commands)
       if (std::find(commands.begin(), commands.end(), each) == commands.end()) commands.push_back(each);

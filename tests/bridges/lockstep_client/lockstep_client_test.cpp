@@ -291,6 +291,16 @@ struct Listening {
   shoal::sim_tick_t tick{};
 };
 
+TEST(LockstepClient, EndsSoonAfterALastTickWhoseMessagesNeverCome) {
+  Listening test({"a"});
+  test.client.set_silence_limit(10min);
+  test.simulator.name("a", bytes_of("lost"));
+  test.simulator.tick(1, {"pilot"}, true);  // and the simulator ends: no one answers the requests
+  EXPECT_FALSE(test.client.next_tick(test.tick));
+  EXPECT_EQ(test.client.end(), LockstepClient::End::silence);
+  EXPECT_TRUE(test.seen.empty());
+}
+
 TEST(LockstepClient, HandlesMessagesInTheOrderOfTheTickAndOnce) {
   Listening test({"a", "b"});
   for (const char* text : {"1", "3"}) test.simulator.name("a", bytes_of(text));
