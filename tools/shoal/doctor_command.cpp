@@ -1,11 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fcntl.h>
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
 #include <memory>
 
 #include "bridges/base/child_program.hpp"
+#include "bridges/base/file_descriptor.hpp"
 #include "bridges/bus/network_check.hpp"
 #include "experiment/process/helper_programs.hpp"
 #include "tools/shoal/commands/commands.hpp"
@@ -23,6 +32,26 @@ const char* word(bridges::Finding::Verdict verdict) {
     default:
       return "BAD     ";
   }
+}
+
+constexpr std::uintmax_t least_free_bytes = 1'000'000'000;  // a record of an hour, plots and a film
+
+/// Checks whether results can be written to the current folder: makes a file there, and removes it.
+bridges::Finding check_folder() {
+  using Verdict = bridges::Finding::Verdict;
+  std::string probe = ".shoal-doctor-XXXXXX";
+  const bridges::FileDescriptor file(mkostemp(probe.data(), O_CLOEXEC));
+  const int reason = errno;
+  std::error_code error;
+  const std::string here = std::filesystem::current_path(error).string();
+  const std::string elsewhere = "choose another folder with --results";
+  if (file.number() < 0)
+    return {"folder", Verdict::warning, here + " cannot be written: " + std::strerror(reason) + "; " + elsewhere, {}};
+  std::filesystem::remove(probe, error);
+  const std::uintmax_t free_bytes = std::filesystem::space(".", error).available;
+  const std::string text = fmt::format("{} has {:.1f} GB free", here, static_cast<double>(free_bytes) * 1e-9);
+  if (error || free_bytes >= least_free_bytes) return {"folder", Verdict::ok, text, {}};
+  return {"folder", Verdict::warning, text + "; free some space, or " + elsewhere, {}};
 }
 
 /// Prints which programs of others are missing, and how to install them.
@@ -55,7 +84,9 @@ bool report(const std::vector<bridges::Finding>& findings) {
 
 int examine(const std::string& url, const std::string& peer) {
   if (!peer.empty()) return report(bridges::check_peer(peer, url)) ? exit_ok : exit_bus;
-  const bool usable = report(bridges::check_network(url));
+  std::vector<bridges::Finding> findings = bridges::check_network(url);
+  findings.push_back(check_folder());
+  const bool usable = report(findings);
   report_helpers();
   std::cout << (usable ? "\nLCM is usable here.\n" : "\nLCM is not usable here.\n");
   return usable ? exit_ok : exit_bus;
@@ -77,7 +108,7 @@ static void add_doctor_command(CLI::App& app, int& exit_code) {
   command->callback([url, peer, &exit_code] { exit_code = examine(*url, *peer); });
 }
 
-SHOAL_COMMAND(connect, "doctor", "Check LCM and helper programs on this machine, and print how to fix them",
+SHOAL_COMMAND(connect, "doctor", "Check network, folder and helper programs of this machine, and print how to fix them",
               add_doctor_command);
 
 }  // namespace tools
