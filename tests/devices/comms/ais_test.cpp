@@ -22,13 +22,14 @@ struct Station {
   double height_m = 10;
 };
 
-/// Weightless boxes called a, b, ... with an AIS each, above water at 0.
+/// Weightless boxes called a to z, s26, s27 ... side by side, with an AIS each, above water at 0.
 std::string stations(const std::vector<Station>& all, const std::string& more = "") {
   std::string text = "shoal: 1\nphysics: {step_s: 0.02, gravity_mps2: 0}\nmedium: {water: {}}\nvehicles:\n";
-  char name = 'a';
   for (const Station& station : all) {
-    const std::string id(1, name++);
-    text += "  - {name: " + id + ", position_m: [" + std::to_string(station.x_m) + ", 0, " +
+    const auto number = static_cast<std::size_t>(&station - all.data());
+    const std::string id = number < 26 ? std::string(1, "abcdefghijklmnopqrstuvwxyz"[number]) : "s" + std::to_string(number);
+    text += "  - {name: " + id + ", position_m: [" + std::to_string(station.x_m) + ", " +
+            std::to_string(2 * number) + ", " +
             std::to_string(station.height_m) + "], model: {shoal: 1, vehicle: " + id +
             ", bodies: [{name: hull, hydrodynamics: {model: none}, parts: [{shape: box, size_m: [1, 1, 1], mass_kg: "
             "1}]}], devices: [{name: ais, type: ais, rate_hz: 5, " +
@@ -195,7 +196,7 @@ TEST(Ais, OfTwoInOneSlotTheStrongerIsReceivedIfItIsTenDecibelStronger) {
 
 TEST(Ais, LosesTheShareOfMessagesAskedFor) {
   test::TestWorld test(stations({{0}, {1000, "station: receiver, loss_probability: 0.5"}}));
-  set_velocity(test, "a", {24 * knot, 0, 0});
+  set_velocity(test, "a", {0, -24 * knot, 0});
   const auto received = of_type(messages_at(test, "b", 400), 1, false);
   // 200 messages: 100 with a standard deviation of 7.
   EXPECT_NEAR(static_cast<double>(received.size()), 100, 28);

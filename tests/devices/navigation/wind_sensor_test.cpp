@@ -15,7 +15,7 @@ using test::marine_world;
 constexpr double degree = std::numbers::pi / 180;
 
 /// Air that moves to the north at 5 m/s, over the sensor at 5 m.
-const char* const southerly = "{water: {surface_m: -5}, wind: {velocity_mps: [0, 5]}}";
+const char* const southerly = "{water: {surface_m: -5}, wind: {velocity_mps: [0, 5, 0]}}";
 
 std::string sensor(const std::string& keys = "", const std::string& rpy_deg = "[0, 0, 0]",
                    const std::string& medium = southerly) {
@@ -74,7 +74,7 @@ TEST(WindSensor, HasALeastAndALargestSpeed) {
 }
 
 TEST(WindSensor, UnderWaterItIsInvalid) {
-  const wind_t wind = truth(sensor("", "[0, 0, 0]", "{water: {surface_m: 1}, wind: {velocity_mps: [0, 5]}}"));
+  const wind_t wind = truth(sensor("", "[0, 0, 0]", "{water: {surface_m: 1}, wind: {velocity_mps: [0, 5, 0]}}"));
   EXPECT_EQ(wind.valid, 0);
   EXPECT_TRUE(std::isnan(wind.apparent_speed_mps));
   EXPECT_TRUE(std::isnan(wind.true_direction_rad));
@@ -101,9 +101,10 @@ TEST(WindSensor, AnErrorOfTheVelocityIsOneOfTheTrueWindOnly) {
   test::TestWorld test(sensor(", velocity_noise: {bias: 1}"));
   test::Listener<wind_t> reports(test, "r1.s");
   test.run_for(0.01);
-  EXPECT_NEAR(reports.last().apparent_speed_mps, 5, 1e-9);
+  const wind_t wind = reports.last();
+  EXPECT_NEAR(wind.apparent_speed_mps, 5, 1e-9);
   // It believes to go 1 m/s to the east and 1 m/s to the north: the air goes (1, 6).
-  EXPECT_NEAR(reports.last().true_speed_mps, std::sqrt(37), 1e-9);
+  EXPECT_NEAR(wind.true_speed_mps, std::sqrt(37), 1e-9);
 }
 
 TEST(WindSensor, RefusesANegativeThreshold) {
