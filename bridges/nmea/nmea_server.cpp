@@ -87,7 +87,7 @@ Endpoint read_endpoint(const std::string& text) {
   std::string host = text.substr(0, colon);
   const bool in_brackets = host.size() > 2 && host.front() == '[' && host.back() == ']';
   if (in_brackets) host = host.substr(1, host.size() - 2);
-  if (!port || host.empty() || (!in_brackets && host.find(':') != std::string::npos))
+  if (!port || host.empty() || (!in_brackets && host.find_first_of(":[]") != std::string::npos))
     throw std::invalid_argument("an address must be HOST:PORT, such as 127.0.0.1:10110 or [::1]:10110, got '" + text +
                                 "'");
   return {host, *port};

@@ -19,7 +19,9 @@ class FieldWriter {
  public:
   explicit FieldWriter(std::string body) : body_(std::move(body)) {}
   void number(const Number& value, int decimals, double /*low*/, double /*high*/) {
-    add(value && std::isfinite(*value) ? fmt::format("{:.{}f}", *value, decimals) : "");
+    std::string text = value && std::isfinite(*value) ? fmt::format("{:.{}f}", *value, decimals) : "";
+    if (text.starts_with('-') && text.find_first_not_of("-0.") == text.npos) text.erase(0, 1);  // no negative zero
+    add(text);
   }
   void integer(int value, int digits, int /*high*/) { add(fmt::format("{:0{}}", value, digits)); }
   void letter(char value, std::string_view /*allowed*/) { add(std::string(1, value)); }

@@ -64,7 +64,7 @@ std::vector<std::string> await_lines(TestServer& server, std::size_t count) {
 TEST(NmeaServer, SendsToAllClientsAndTakesTheirLines) {
   TestServer server;
   Peer one(server->port()), two(server->port());
-  ASSERT_TRUE(server.await_note("connected", 2));
+  ASSERT_TRUE(server.await_note(" connected", 2));
   server->send({"$A*41", "$B*42"});
   for (Peer* peer : {&one, &two}) {
     EXPECT_EQ(peer->line(), "$A*41");
@@ -82,9 +82,9 @@ TEST(NmeaServer, AClientThatGoesLeavesTheOthers) {
   Peer stays(server->port());
   {
     const Peer leaves(server->port());
-    ASSERT_TRUE(server.await_note("connected", 2));
+    ASSERT_TRUE(server.await_note(" connected", 2));
   }
-  ASSERT_TRUE(server.await_note("disconnected"));
+  ASSERT_TRUE(server.await_note(" disconnected"));
   server->send({"$A*41"});
   EXPECT_EQ(stays.line(), "$A*41");
 }
@@ -92,7 +92,7 @@ TEST(NmeaServer, AClientThatGoesLeavesTheOthers) {
 TEST(NmeaServer, ASlowClientIsCutWithOneNoteAndTheOthersGoOn) {
   TestServer server;
   Peer slow(server->port(), 4096), good(server->port());
-  ASSERT_TRUE(server.await_note("connected", 2));
+  ASSERT_TRUE(server.await_note(" connected", 2));
   // What the kernel keeps for a connection, and what the server keeps, are some megabytes at most.
   const std::vector<std::string> lines(100, std::string(80, 'x'));
   bool is_cut = false;
@@ -113,14 +113,14 @@ TEST(NmeaServer, RefusesMoreClientsThanItsLimit) {
   TestServer server;
   std::vector<std::unique_ptr<Peer>> peers;
   for (std::size_t i = 0; i < NmeaServer::max_clients; ++i) peers.push_back(std::make_unique<Peer>(server->port()));
-  ASSERT_TRUE(server.await_note("connected", NmeaServer::max_clients));
+  ASSERT_TRUE(server.await_note(" connected", NmeaServer::max_clients));
   Peer more(server->port());
   EXPECT_EQ(more.line(), std::nullopt);
   EXPECT_TRUE(server.await_note("is refused: there are 32 clients"));
   peers.pop_back();
-  ASSERT_TRUE(server.await_note("disconnected"));
+  ASSERT_TRUE(server.await_note(" disconnected"));
   Peer again(server->port());
-  ASSERT_TRUE(server.await_note("connected", NmeaServer::max_clients + 1));
+  ASSERT_TRUE(server.await_note(" connected", NmeaServer::max_clients + 1));
   server->send({"$A*41"});
   EXPECT_EQ(again.line(), "$A*41");
 }
@@ -147,7 +147,7 @@ TEST(NmeaServer, SurvivesAnyBytesOfAHostilePeer) {
     for (const auto& line : server->take_lines()) EXPECT_LE(line.text.size(), sim::NmeaLines::longest);
   }
   Peer good(server->port());
-  ASSERT_TRUE(server.await_note("connected", 51));
+  ASSERT_TRUE(server.await_note(" connected", 51));
   server->send({"$A*41"});
   EXPECT_EQ(good.line(), "$A*41");
 }

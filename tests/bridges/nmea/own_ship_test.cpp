@@ -84,7 +84,7 @@ TEST(OwnShip, AYawToTheLeftFromEastIsAHeadingFromNorth) {
   OwnShip own = ship();
   // 30 degrees to the left of east are 60 degrees; 0.01 rad/s to the left are -34.4 degrees per minute.
   own.receive(heading(30 * degree, 0.01));
-  EXPECT_THAT(own.sentences(), ElementsAre(line("HEHDT,60.0,T"), line("TIROT,-34.4,A"), line("YXXDR,A,-0.00,D,PTCH"),
+  EXPECT_THAT(own.sentences(), ElementsAre(line("HEHDT,60.0,T"), line("TIROT,-34.4,A"), line("YXXDR,A,0.00,D,PTCH"),
                                            line("YXXDR,A,0.00,D,ROLL")));
   own.receive(heading(90.01 * degree));
   EXPECT_EQ(own.sentences().front(), line("HEHDT,0.0,T"));  // and not 360.0
