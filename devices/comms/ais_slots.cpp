@@ -7,7 +7,7 @@
 namespace devices {
 
 std::int64_t ais_interval_slots(AisStation station, double speed_mps, bool moored, bool turning) {
-  const double knots = std::round(speed_mps * 36'000 / 1852) / 10;  // as it is sent
+  const double knots = std::round(speed_mps * 36'000 / 1852) / 10;                               // as it is sent
   const auto seconds = [](std::int64_t thirds) { return thirds * ais_slots_per_minute / 180; };  // of thirds
   if (station == AisStation::class_b) return seconds(knots > 2 ? 3 * 30 : 3 * 180);
   if (moored) return seconds(knots > 3 ? 3 * 10 : 3 * 180);

@@ -93,11 +93,12 @@ TEST(NmeaDoor, ApbSteersTheVehicleOnlyIfItMay) {
 TEST(NmeaDoor, GpsdDecodesPositionsAndAis) {
   if (std::system("gpsd -V >/dev/null 2>&1") != 0 || std::system("gpspipe -V >/dev/null 2>&1") != 0)
     GTEST_SKIP() << "gpsd and gpspipe are not installed";
-  Program run(run_command());
-  Program nmea(door({"--vehicle", "boat", "--listen", address(1)}));
+  // In lockstep from the start, as names are sent soon after it, and then every 6 minutes.
+  Program nmea(door({"--vehicle", "boat", "--lockstep", "--listen", address(1)}));
   ASSERT_TRUE(await_listening(nmea)) << nmea.errors();
   Program gpsd({"gpsd", "-N", "-n", "-S", std::to_string(own_port(3)), "tcp://" + address(1)});
   Program gpspipe({"bash", "-c", "until gpspipe -w " + address(3) + "; do sleep 0.1; done"});
+  Program run(run_command({"--await", "nmea"}));
   // What it has decoded, by class; AIS by MMSI and type.
   nlohmann::json position, sky;
   std::map<std::pair<int, int>, nlohmann::json> ais;
@@ -112,13 +113,14 @@ TEST(NmeaDoor, GpsdDecodesPositionsAndAis) {
     return !position.is_null() && ais.contains({211'000'002, 1}) && ais.contains({211'000'002, 5}) &&
            ais.contains({211'000'003, 18}) && ais.contains({211'000'003, 24}) && ais.contains({211'000'001, 18});
   };
-  EXPECT_TRUE(await(look)) << nmea.errors() << gpsd.errors() << gpspipe.output();
+  EXPECT_TRUE(await(look, timeout)) << nmea.errors() << gpsd.errors() << gpspipe.output();
   ASSERT_FALSE(position.is_null());
   EXPECT_NEAR(position.value("lat", 0.0), 42.3584, 0.01);
   EXPECT_NEAR(position.value("lon", 0.0), -71.0876, 0.01);
   EXPECT_THAT(position.value("time", ""), HasSubstr("2026-01-01T"));
-  EXPECT_NEAR((ais[{211'000'002, 1}].value("lat", 0.0)), 42.3584, 0.02);
-  EXPECT_NEAR((ais[{211'000'002, 1}].value("speed", 0.0)), 1.2 * 3600 / 1852, 0.8);
+  // As sent: in 1/600000 of a degree and tenths of a knot.
+  EXPECT_NEAR((ais[{211'000'002, 1}].value("lat", 0)) / 600'000.0, 42.3584, 0.02);
+  EXPECT_NEAR((ais[{211'000'002, 1}].value("speed", 0)), 12 * 3600 / 1852.0, 8);
   EXPECT_EQ((ais[{211'000'002, 5}].value("shipname", "")), "FERRY");
   EXPECT_EQ((ais[{211'000'003, 24}].value("shipname", "")), "PILOT");
 }
@@ -157,7 +159,7 @@ TEST(NmeaDoor, MistakesAreReportedInOneLine) {
   };
   for (const Mistake& mistake : {Mistake{{}, "--vehicle is required"},
                                  Mistake{{"--vehicle", "boat", "--listen", "10110"}, "an address must be HOST:PORT"},
-                                 Mistake{{"--vehicle", "boat", "--listen", ""}, "--listen or --udp must be given"},
+                                 Mistake{{"--vehicle", "boat", "--listen", "none"}, "--listen none needs --udp"},
                                  Mistake{{"--vehicle", "boat", "--variation-deg", "200"}, "--variation-deg"}}) {
     Program program(door(mistake.arguments));
     EXPECT_EQ(program.wait(), 2) << mistake.says;

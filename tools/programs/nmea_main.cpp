@@ -180,7 +180,7 @@ int serve(const Options& options) {
   Notes notes(options.name);
   shoal::Client client(options.name, options.participation.lcm_url);
   NmeaServer::Options sockets;
-  if (!options.listen.empty()) sockets.listen = bridges::nmea::read_endpoint(options.listen);
+  if (options.listen != "none") sockets.listen = bridges::nmea::read_endpoint(options.listen);
   if (!options.udp.empty()) sockets.udp = bridges::nmea::read_endpoint(options.udp);
   sockets.log = [&notes](const std::string& text) { notes(text); };
   NmeaServer server(sockets);
@@ -198,7 +198,8 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
   declared.subscribes({});
   declared.text("vehicle", "VEHICLE", options.vehicle, "vehicle whose instruments these are").required();
   declared.text("name", "NAME", options.name, "its client name in the run");
-  declared.text("listen", "HOST:PORT", options.listen, "address of the TCP server; port 0: any free one");
+  declared.text("listen", "HOST:PORT", options.listen,
+                "address of the TCP server; port 0: any free one; none: no server");
   declared.text("udp", "HOST:PORT", options.udp, "also sends each sentence there in a datagram");
   declared.flag("steer", options.steer, "sentences of clients steer: APB and RMB command the autopilot of the vehicle");
   declared.number("variation_deg", options.variation_deg, -180, 180,
@@ -226,7 +227,7 @@ int run(int argc, char** argv) {
   command_line::DeclaredOptions declared(app);
   declare(declared, options);
   if (const auto exit_code = declared.parse(argc, argv)) return *exit_code;
-  if (options.listen.empty() && options.udp.empty()) throw std::invalid_argument("--listen or --udp must be given");
+  if (options.listen == "none" && options.udp.empty()) throw std::invalid_argument("--listen none needs --udp");
   return serve(options);
 }
 

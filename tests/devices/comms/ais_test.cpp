@@ -27,10 +27,10 @@ std::string stations(const std::vector<Station>& all, const std::string& more = 
   std::string text = "shoal: 1\nphysics: {step_s: 0.02, gravity_mps2: 0}\nmedium: {water: {}}\nvehicles:\n";
   for (const Station& station : all) {
     const auto number = static_cast<std::size_t>(&station - all.data());
-    const std::string id = number < 26 ? std::string(1, "abcdefghijklmnopqrstuvwxyz"[number]) : "s" + std::to_string(number);
-    text += "  - {name: " + id + ", position_m: [" + std::to_string(station.x_m) + ", " +
-            std::to_string(2 * number) + ", " +
-            std::to_string(station.height_m) + "], model: {shoal: 1, vehicle: " + id +
+    const std::string id =
+        number < 26 ? std::string(1, "abcdefghijklmnopqrstuvwxyz"[number]) : "s" + std::to_string(number);
+    text += "  - {name: " + id + ", position_m: [" + std::to_string(station.x_m) + ", " + std::to_string(2 * number) +
+            ", " + std::to_string(station.height_m) + "], model: {shoal: 1, vehicle: " + id +
             ", bodies: [{name: hull, hydrodynamics: {model: none}, parts: [{shape: box, size_m: [1, 1, 1], mass_kg: "
             "1}]}], devices: [{name: ais, type: ais, rate_hz: 5, " +
             station.keys + "}]}}\n";
