@@ -10,7 +10,7 @@
 
 namespace bridges::nmea {
 
-// The sentences of NMEA 0183 (IEC 61162-1) as structs, each with the fields of its sentence in their order and units:
+// The sentences of NMEA 0183 (IEC 61162-1) as types, each with the fields of its sentence in their order and units:
 // knots, degrees clockwise, meters.  An absent field is empty in the sentence.
 
 using Number = std::optional<double>;
@@ -54,7 +54,7 @@ struct Vtg {
   static constexpr std::string_view type = "VTG";
   Number course_deg, magnetic_course_deg;
   Number speed_kn, speed_kmph;
-  char mode = 'N';  ///< as in Rmc
+  char mode = 'N';  ///< as in RMC
 };
 
 /// Heading, and speed through the water.
