@@ -130,12 +130,12 @@ void Micromodem::unlist() {
 
 void Micromodem::take(const std::string& sentence, sim::Time now) {
   now_ = now;
-  NmeaLines lines;  // sentences over the bus are complete
+  sim::NmeaLines lines;  // sentences over the bus are complete
   const std::string ended = sentence + "\n";
   for (const auto& line : lines.add(std::as_bytes(std::span(ended.data(), ended.size())))) take_line(line, now);
 }
 
-void Micromodem::take_line(const NmeaLines::Line& line, sim::Time now) {
+void Micromodem::take_line(const sim::NmeaLines::Line& line, sim::Time now) {
   protocol_.take_line(line, now);
   if (protocol_.address() == address_) return;
   take_address();
@@ -168,7 +168,7 @@ double Micromodem::power_W() const {
 }
 
 void Micromodem::emit(const std::string& body) {
-  std::string sentence = nmea_sentence(body);
+  std::string sentence = sim::nmea_sentence(body);
   if (serial_) serial_->write(sentence + "\r\n");
   if (saying_.size() >= max_sentences) saying_.pop_front();
   saying_.push_back({now_, vehicle_.clock().reading(now_), std::move(sentence)});

@@ -91,7 +91,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
   double elapsed_s(sim::Time from, sim::Time to) const override;
   /// Applies an address that the host may have changed.
   void take_address();
-  void take_line(const NmeaLines::Line& line, sim::Time now);
+  void take_line(const sim::NmeaLines::Line& line, sim::Time now);
   std::string group() const { return "micromodem " + params_.network; }
   Sound send(sim::Signal signal, sim::Time at, bool on_the_second);
 
@@ -102,7 +102,7 @@ class Micromodem final : public sim::Sensor, private sim::AcousticListener, priv
   Addresses& addresses_;
   sim::Transducer transducer_;
   MicromodemProtocol protocol_;
-  NmeaLines lines_;
+  sim::NmeaLines lines_;
   std::deque<Sentence> saying_;
   std::vector<Sentence> sentences_;
   std::unique_ptr<SerialPort> serial_;

@@ -91,7 +91,7 @@ void MicromodemProtocol::set_utc(std::int64_t set_us, sim::Time now) {
 }
 
 /// $CCCLK,yyyy,mm,dd,hh,mm,ss.
-void MicromodemProtocol::set_clock(const NmeaSentence& in, sim::Time now) {
+void MicromodemProtocol::set_clock(const sim::NmeaSentence& in, sim::Time now) {
   const auto year = in.number(1, 1970, 2200), month = in.number(2, 1, 12), day = in.number(3, 1, 31);
   const auto hour = in.number(4, 0, 23), minute = in.number(5, 0, 59), second = in.number(6, 0, 60);
   if (!year || !month || !day || !hour || !minute || !second)
@@ -103,7 +103,7 @@ void MicromodemProtocol::set_clock(const NmeaSentence& in, sim::Time now) {
 }
 
 /// $CCTMS,time,mode: 0 at once, 1 with the next pulse.
-void MicromodemProtocol::set_time(const NmeaSentence& in, sim::Time now) {
+void MicromodemProtocol::set_time(const sim::NmeaSentence& in, sim::Time now) {
   const auto set_us = read_iso_time(in.at(1));
   if (!set_us) return error("NMEA", bad_field, "TMS needs a time as 2026-01-31T23:59:59Z", now);
   const auto mode = in.number(2, 0, 1);
@@ -127,7 +127,7 @@ void MicromodemProtocol::detect_pulse(sim::Time now) {
 }
 
 /// $CCTMQ,0.
-void MicromodemProtocol::query_time(const NmeaSentence& in, sim::Time now) {
+void MicromodemProtocol::query_time(const sim::NmeaSentence& in, sim::Time now) {
   if (!in.number(1, 0, 0)) return error("NMEA", bad_field, "TMQ needs a 0", now);
   side_.emit("CATMQ," + iso_time(utc_us(now)) + (clock_set_ ? ",USER_CMD," : ",NONE,") +
              (settings_.on("SNV") ? "EXT_PPS" : "RTC"));

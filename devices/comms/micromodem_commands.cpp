@@ -45,27 +45,27 @@ MicromodemProtocol::Command MicromodemProtocol::command_of(const std::string& na
   return known ? found->second : nullptr;
 }
 
-std::string MicromodemProtocol::echo(const NmeaSentence& in, const std::string& name) {
+std::string MicromodemProtocol::echo(const sim::NmeaSentence& in, const std::string& name) {
   std::string text = name;
   for (std::size_t i = 1; i < in.fields.size(); ++i) text += "," + in.fields[i];
   return text;
 }
 
-void MicromodemProtocol::take_line(const NmeaLines::Line& line, sim::Time now) {
+void MicromodemProtocol::take_line(const sim::NmeaLines::Line& line, sim::Time now) {
   if (is_down(now)) return;
-  NmeaSentence in;
+  sim::NmeaSentence in;
   if (line.too_long) {
     error("NMEA", unknown_sentence, "line too long", now);
     return;
   }
   // Parse the sentence.
-  switch (parse_nmea(line.text, in)) {
-    case NmeaError::no_sentence:
+  switch (sim::parse_nmea(line.text, in)) {
+    case sim::NmeaError::no_sentence:
       return;  // noise
-    case NmeaError::bad_checksum:
+    case sim::NmeaError::bad_checksum:
       error("NMEA", 2, "bad checksum", now);
       return;
-    case NmeaError::none:
+    case sim::NmeaError::none:
       break;
   }
   // Ignore own sentences echoed by a terminal: an answer would loop forever.
@@ -77,7 +77,7 @@ void MicromodemProtocol::take_line(const NmeaLines::Line& line, sim::Time now) {
     error("NMEA", unknown_sentence, "unknown sentence " + in.name().substr(0, 16), now);
 }
 
-std::optional<std::pair<int, int>> MicromodemProtocol::addresses(const NmeaSentence& in, std::size_t first,
+std::optional<std::pair<int, int>> MicromodemProtocol::addresses(const sim::NmeaSentence& in, std::size_t first,
                                                                  sim::Time now) {
   const auto source = in.number(first, 0, micromodem_broadcast - 1);
   const auto destination = in.number(first + 1, 0, micromodem_broadcast);
@@ -86,7 +86,7 @@ std::optional<std::pair<int, int>> MicromodemProtocol::addresses(const NmeaSente
   return {};
 }
 
-void MicromodemProtocol::configure(const NmeaSentence& in, sim::Time now) {
+void MicromodemProtocol::configure(const sim::NmeaSentence& in, sim::Time now) {
   const auto value = in.number(2, -1000000, 1000000);
   if (!value || in.count() != 2) return error("NMEA", bad_field, "CFG needs a name and a number", now);
   if (in.at(1) == "ALL") {
@@ -104,7 +104,7 @@ void MicromodemProtocol::configure(const NmeaSentence& in, sim::Time now) {
   }
 }
 
-void MicromodemProtocol::query(const NmeaSentence& in, sim::Time now) {
+void MicromodemProtocol::query(const sim::NmeaSentence& in, sim::Time now) {
   if (in.at(1) == "ALL") {
     for (const auto& [name, value] : settings_.all()) side_.emit("CACFG," + name + "," + std::to_string(value));
     return;
@@ -114,7 +114,7 @@ void MicromodemProtocol::query(const NmeaSentence& in, sim::Time now) {
   side_.emit("CACFG," + in.at(1) + "," + std::to_string(*value));
 }
 
-void MicromodemProtocol::reset(const NmeaSentence& in, sim::Time now) {
+void MicromodemProtocol::reset(const sim::NmeaSentence& in, sim::Time now) {
   const auto who = addresses(in, 1, now);
   if (!who) return;
   if (who->first != address() || who->second != address())
@@ -125,7 +125,7 @@ void MicromodemProtocol::reset(const NmeaSentence& in, sim::Time now) {
   restart(now + sim::from_seconds(1));
 }
 
-void MicromodemProtocol::start_cycle(const NmeaSentence& in, sim::Time now) {
+void MicromodemProtocol::start_cycle(const sim::NmeaSentence& in, sim::Time now) {
   const auto who = addresses(in, 2, now);
   if (!who) return;
   // Check the fields.
@@ -151,7 +151,7 @@ void MicromodemProtocol::start_cycle(const NmeaSentence& in, sim::Time now) {
                        sound.end + sim::from_seconds(settings_.get("CTO"))};
 }
 
-void MicromodemProtocol::take_data(const NmeaSentence& in, sim::Time now) {
+void MicromodemProtocol::take_data(const sim::NmeaSentence& in, sim::Time now) {
   const auto who = addresses(in, 1, now);
   if (!who) return;
   // Check that the data were requested.
@@ -162,7 +162,7 @@ void MicromodemProtocol::take_data(const NmeaSentence& in, sim::Time now) {
         "the cycle is for " + std::to_string(cycle_->destination) + " and the data for " + std::to_string(who->second),
         now);
   // Decode the data.
-  const auto data = from_hex(in.at(4));
+  const auto data = sim::from_hex(in.at(4));
   const auto ack = in.number(3, 0, 1);
   if (!data || !ack) return error("TXD", bad_field, "data must be bytes in hexadecimal", now);
   const int room = micromodem_rates()[static_cast<std::size_t>(cycle_->rate)].frame_bytes;
@@ -179,7 +179,7 @@ void MicromodemProtocol::take_data(const NmeaSentence& in, sim::Time now) {
     request_frame(now);
 }
 
-void MicromodemProtocol::send_ping(const NmeaSentence& in, sim::Time now) {
+void MicromodemProtocol::send_ping(const sim::NmeaSentence& in, sim::Time now) {
   const auto who = addresses(in, 1, now);
   if (!who) return;
   if (who->first != address() || who->second == address() || who->second == micromodem_broadcast)
@@ -194,7 +194,7 @@ void MicromodemProtocol::send_ping(const NmeaSentence& in, sim::Time now) {
   ping_ = Ping{who->second, sound.begin, sound.begin + sim::from_seconds(micromodem_turnaround_s + 6)};
 }
 
-void MicromodemProtocol::send_mini(const NmeaSentence& in, sim::Time now) {
+void MicromodemProtocol::send_mini(const sim::NmeaSentence& in, sim::Time now) {
   const auto who = addresses(in, 1, now);
   if (!who) return;
   const std::string& hex = in.at(3);
@@ -213,7 +213,7 @@ void MicromodemProtocol::send_mini(const NmeaSentence& in, sim::Time now) {
 }
 
 /// $CCPDT,group,channel,synchronous,sync timeout,timeout,A,B,C,D: flags.
-void MicromodemProtocol::interrogate_remus_beacons(const NmeaSentence& in, sim::Time now) {
+void MicromodemProtocol::interrogate_remus_beacons(const sim::NmeaSentence& in, sim::Time now) {
   const auto on_the_second = in.number(3, 0, 1);
   BeaconPing ping;
   bool good = on_the_second.has_value();
@@ -226,7 +226,7 @@ void MicromodemProtocol::interrogate_remus_beacons(const NmeaSentence& in, sim::
 }
 
 /// $CCPNT,frequency,length,length of the answers,timeout,A,B,C,D: frequencies,flag: 1 at once, 0 by the pulse.
-void MicromodemProtocol::interrogate_narrowband_beacons(const NmeaSentence& in, sim::Time now) {
+void MicromodemProtocol::interrogate_narrowband_beacons(const sim::NmeaSentence& in, sim::Time now) {
   const auto at_once = in.number(9, 0, 1);
   BeaconPing ping;
   bool good = at_once.has_value();
@@ -239,7 +239,7 @@ void MicromodemProtocol::interrogate_narrowband_beacons(const NmeaSentence& in, 
 }
 
 /// $CCPGT,frequency,bits,sequence,timeout,frequency of the answers,A,B,C,D: sequences,bandwidth,reserved.
-void MicromodemProtocol::interrogate_generic_beacons(const NmeaSentence& in, sim::Time now) {
+void MicromodemProtocol::interrogate_generic_beacons(const sim::NmeaSentence& in, sim::Time now) {
   BeaconPing ping;
   bool good = is_sequence_set(in.at(3)).has_value();
   for (const std::size_t frequency : {1, 5}) good = good && in.number(frequency, 1, 1000000);
@@ -254,7 +254,7 @@ void MicromodemProtocol::interrogate_generic_beacons(const NmeaSentence& in, sim
 
 /// The frequencies and sequences are those of the configured transponders; the host only selects which of them are
 /// interrogated.
-void MicromodemProtocol::interrogate_beacons(const NmeaSentence& in, bool good, std::optional<int> timeout_ms,
+void MicromodemProtocol::interrogate_beacons(const sim::NmeaSentence& in, bool good, std::optional<int> timeout_ms,
                                              BeaconPing ping, bool on_the_second, sim::Time now) {
   const std::string name = in.name().substr(2);
   if (!good || !timeout_ms) return error("NMEA", bad_field, name + " has a field out of range", now);

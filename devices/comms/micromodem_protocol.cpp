@@ -255,7 +255,8 @@ void MicromodemProtocol::received_data(const MicromodemPacket& packet, const Mic
     if (frame.ack) acknowledged |= 1 << i;
     if (settings_.on("RXD"))
       side_.emit("CARXD," + std::to_string(packet.source) + "," + std::to_string(packet.destination) + "," +
-                 std::to_string(static_cast<int>(frame.ack)) + "," + std::to_string(i + 1) + "," + to_hex(frame.data));
+                 std::to_string(static_cast<int>(frame.ack)) + "," + std::to_string(i + 1) + "," +
+                 sim::to_hex(frame.data));
   }
   emit_statistics(packet, arrival, bad_frames);
   // Acknowledge the frames that request it.

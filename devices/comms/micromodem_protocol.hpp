@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include "devices/common/nmea.hpp"
 #include "devices/comms/micromodem_packet.hpp"
 #include "devices/comms/micromodem_rates.hpp"
 #include "devices/comms/micromodem_settings.hpp"
 #include "sim/base/time.hpp"
+#include "sim/nmea/nmea.hpp"
 
 namespace devices {
 
@@ -116,7 +116,7 @@ class MicromodemProtocol : private MicromodemPending {
   MicromodemProtocol(const Config& config, MicromodemSide& side);
 
   /// Handles a line from the host, with any content.
-  void take_line(const NmeaLines::Line& line, sim::Time now);
+  void take_line(const sim::NmeaLines::Line& line, sim::Time now);
   void tick(sim::Time now);
   /// Resets the state, and sends the start-up sentences again at `up`.  Settings are kept; the time set by the host is
   /// not.
@@ -132,30 +132,30 @@ class MicromodemProtocol : private MicromodemPending {
   void visit_state(sim::StateArchive& archive);
 
  private:
-  using Command = void (MicromodemProtocol::*)(const NmeaSentence&, sim::Time);
+  using Command = void (MicromodemProtocol::*)(const sim::NmeaSentence&, sim::Time);
 
   // micromodem_commands.cpp
-  void configure(const NmeaSentence& in, sim::Time now);
-  void query(const NmeaSentence& in, sim::Time now);
-  void reset(const NmeaSentence& in, sim::Time now);
-  void start_cycle(const NmeaSentence& in, sim::Time now);
-  void take_data(const NmeaSentence& in, sim::Time now);
-  void send_ping(const NmeaSentence& in, sim::Time now);
-  void send_mini(const NmeaSentence& in, sim::Time now);
-  void interrogate_remus_beacons(const NmeaSentence& in, sim::Time now);
-  void interrogate_narrowband_beacons(const NmeaSentence& in, sim::Time now);
-  void interrogate_generic_beacons(const NmeaSentence& in, sim::Time now);
-  void interrogate_beacons(const NmeaSentence& in, bool good, std::optional<int> timeout_ms, BeaconPing ping,
+  void configure(const sim::NmeaSentence& in, sim::Time now);
+  void query(const sim::NmeaSentence& in, sim::Time now);
+  void reset(const sim::NmeaSentence& in, sim::Time now);
+  void start_cycle(const sim::NmeaSentence& in, sim::Time now);
+  void take_data(const sim::NmeaSentence& in, sim::Time now);
+  void send_ping(const sim::NmeaSentence& in, sim::Time now);
+  void send_mini(const sim::NmeaSentence& in, sim::Time now);
+  void interrogate_remus_beacons(const sim::NmeaSentence& in, sim::Time now);
+  void interrogate_narrowband_beacons(const sim::NmeaSentence& in, sim::Time now);
+  void interrogate_generic_beacons(const sim::NmeaSentence& in, sim::Time now);
+  void interrogate_beacons(const sim::NmeaSentence& in, bool good, std::optional<int> timeout_ms, BeaconPing ping,
                            bool on_the_second, sim::Time now);
   /// Returns the handler of a sentence; null when this modem does not support it.
   Command command_of(const std::string& name) const;
   /// Returns the fields of the sentence under another name.
-  static std::string echo(const NmeaSentence& in, const std::string& name);
+  static std::string echo(const sim::NmeaSentence& in, const std::string& name);
 
   // micromodem_clock.cpp
-  void set_clock(const NmeaSentence& in, sim::Time now);
-  void set_time(const NmeaSentence& in, sim::Time now);
-  void query_time(const NmeaSentence& in, sim::Time now);
+  void set_clock(const sim::NmeaSentence& in, sim::Time now);
+  void set_time(const sim::NmeaSentence& in, sim::Time now);
+  void query_time(const sim::NmeaSentence& in, sim::Time now);
   /// Sets the time of the clock, requested by the host.
   void set_utc(std::int64_t set_us, sim::Time now);
   /// Checks whether a whole second of the vehicle clock has begun since the last call.
@@ -172,7 +172,7 @@ class MicromodemProtocol : private MicromodemPending {
   /// Returns whether the modem is busy, and reports an error then.
   bool busy(const char* module, sim::Time now);
   /// Returns source and destination; reports an error and returns std::nullopt if they are invalid.
-  std::optional<std::pair<int, int>> addresses(const NmeaSentence& in, std::size_t first, sim::Time now);
+  std::optional<std::pair<int, int>> addresses(const sim::NmeaSentence& in, std::size_t first, sim::Time now);
 
   void gather(Cycle cycle, sim::Time now);
   void request_frame(sim::Time now);

@@ -36,7 +36,7 @@ SHOAL_FUZZ_TARGET(micromodem) {
   devices::MicromodemProtocol::Config config;
   if (!input.empty() && input.front() == std::byte{modem_2}) config.revision = "2.0.30000";
   devices::MicromodemProtocol protocol(config, side);
-  devices::NmeaLines lines;
+  sim::NmeaLines lines;
   sim::Time now{0};
   fuzz::Reader reader(input);
   while (!reader.ended()) {

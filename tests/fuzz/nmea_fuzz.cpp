@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "devices/common/nmea.hpp"
 #include "devices/comms/micromodem_packet.hpp"
+#include "sim/nmea/nmea.hpp"
 #include "tests/fuzz/fuzz_input.hpp"
 
 // Sentences of NMEA 0183, hexadecimal data, and what a Micro-Modem takes from the water.
 
 SHOAL_FUZZ_TARGET(nmea) {
-  devices::NmeaLines lines;
+  sim::NmeaLines lines;
   std::size_t bytes = 0;
   for (const auto& line : lines.add(input)) {
     bytes += line.text.size();
-    fuzz::require(line.text.size() <= devices::NmeaLines::longest, "lines are bounded");
-    devices::NmeaSentence sentence;
-    if (devices::parse_nmea(line.text, sentence) != devices::NmeaError::none) continue;
+    fuzz::require(line.text.size() <= sim::NmeaLines::longest, "lines are bounded");
+    sim::NmeaSentence sentence;
+    if (sim::parse_nmea(line.text, sentence) != sim::NmeaError::none) continue;
     for (std::size_t i = 0; i <= sentence.count(); ++i) {
       sentence.number(i, 0, 255);
-      if (const auto data = devices::from_hex(sentence.at(i)))
-        fuzz::require(devices::to_hex(*data).size() == sentence.at(i).size(), "to_hex() is as long as what was read");
+      if (const auto data = sim::from_hex(sentence.at(i)))
+        fuzz::require(sim::to_hex(*data).size() == sentence.at(i).size(), "to_hex() is as long as what was read");
     }
   }
   fuzz::require(bytes <= input.size(), "lines do not overlap");

@@ -12,9 +12,9 @@
 #include <set>
 
 #include "bridges/serial/serial_port.hpp"
-#include "devices/common/nmea.hpp"
 #include "messages/yaml/message_writer.hpp"
 #include "sim/bus/in_process_bus.hpp"
+#include "sim/nmea/nmea.hpp"
 #include "sim/world/world.hpp"
 #include "sim/world_file/load_world.hpp"
 #include "tests/project_paths.hpp"
@@ -41,8 +41,8 @@ class Terminal {
     char chunk[4096];
     for (ssize_t size = 0; (size = ::read(descriptor_, chunk, sizeof chunk)) > 0;)
       for (const auto& line : lines_.add(std::as_bytes(std::span(chunk, static_cast<std::size_t>(size))))) {
-        devices::NmeaSentence sentence;
-        EXPECT_EQ(devices::parse_nmea(line.text, sentence), devices::NmeaError::none) << line.text;
+        sim::NmeaSentence sentence;
+        EXPECT_EQ(sim::parse_nmea(line.text, sentence), sim::NmeaError::none) << line.text;
         all.push_back(line.text.substr(1, line.text.find('*') - 1));
       }
     return all;
@@ -50,7 +50,7 @@ class Terminal {
 
  private:
   int descriptor_;
-  devices::NmeaLines lines_;
+  sim::NmeaLines lines_;
 };
 
 class MicromodemPty : public testing::Test {
@@ -86,7 +86,7 @@ TEST_F(MicromodemPty, ASessionOfTwoHosts) {
   two.lines();
   // As a driver starts.
   for (const char* line : {"$CCCFG,CST,1", "$CCCFG,SRC,1", "$CCCFG,REV,1", "$CCCFG,RXP,1", "$CCCFQ,SRC"}) {
-    one.type(devices::nmea_sentence(line + 1) + "\r\n");
+    one.type(sim::nmea_sentence(line + 1) + "\r\n");
     two.type(std::string("$CCCFG,RXP,1\r\n"));
   }
   run_for(0.02);
@@ -164,7 +164,7 @@ TEST_F(MicromodemCommandsOnAPty, EveryCommandOfThePageIsAnsweredWithAndWithoutAC
   for (const bool with_checksum : {true, false})
     for (const Step& step : all_commands()) {
       tried.insert(step.body.substr(0, 5));
-      const auto reported = answers(with_checksum ? devices::nmea_sentence(step.body) : "$" + step.body);
+      const auto reported = answers(with_checksum ? sim::nmea_sentence(step.body) : "$" + step.body);
       ASSERT_FALSE(reported.empty()) << step.body;
       EXPECT_THAT(reported.front(), StartsWith(step.answer)) << step.body;
       run_for(step.busy_s);
@@ -185,7 +185,7 @@ TEST_F(MicromodemCommandsOnAPty, EveryCommandOfThePageIsAnsweredWithAndWithoutAC
 TEST_F(MicromodemCommandsOnAPty, WhatIsWrongWithALineIsSaidForEveryCommand) {
   const std::string time = "CAERR,0000";  // of the first minute
   for (const Step& step : all_commands()) {
-    const std::string good = devices::nmea_sentence(step.body), name = step.body.substr(0, 5);
+    const std::string good = sim::nmea_sentence(step.body), name = step.body.substr(0, 5);
     EXPECT_THAT(answers(good.substr(0, good.size() - 2) + (good.ends_with("00") ? "01" : "00")),
                 testing::ElementsAre(testing::AllOf(StartsWith(time), testing::EndsWith(",NMEA,2,bad checksum"))));
     EXPECT_THAT(answers("$" + step.body + std::string(700, '0')),

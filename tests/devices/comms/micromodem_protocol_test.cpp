@@ -227,7 +227,7 @@ TEST(MicromodemProtocol, SurvivesNoiseAndMutatedSentences) {
                                            "$CCMSC,1,1,0\n"};
   std::mt19937 random(1);
   Modem modem;
-  devices::NmeaLines lines;
+  sim::NmeaLines lines;
   std::size_t max_said = 0;
   for (int i = 0; i < 20000; ++i) {
     std::string text;

@@ -44,8 +44,8 @@ class Hosts : public test::TestWorld {
   std::vector<std::string> take(const std::string& vehicle) {
     std::vector<std::string> all;
     for (const auto& message : (vehicle == "a" ? a : vehicle == "b" ? b : c).take_all()) {
-      devices::NmeaSentence parsed;
-      EXPECT_EQ(devices::parse_nmea(message.sentence, parsed), devices::NmeaError::none) << message.sentence;
+      sim::NmeaSentence parsed;
+      EXPECT_EQ(sim::parse_nmea(message.sentence, parsed), sim::NmeaError::none) << message.sentence;
       all.push_back(message.sentence.substr(1, message.sentence.find('*') - 1));
     }
     return all;

@@ -3,14 +3,14 @@
 
 #include <string>
 
-#include "devices/common/nmea.hpp"
+#include "sim/nmea/nmea.hpp"
 
 namespace test {
 
 /// Field `i` of an NMEA sentence, counted from the one after its name as 1.
 inline std::string field(const std::string& sentence, std::size_t i) {
-  devices::NmeaSentence parsed;
-  devices::parse_nmea("$" + sentence, parsed);
+  sim::NmeaSentence parsed;
+  sim::parse_nmea("$" + sentence, parsed);
   return parsed.at(i);
 }
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "devices/common/nmea.hpp"
+#include "sim/nmea/nmea.hpp"
 
 #include <gtest/gtest.h>
 
 namespace {
 
-using devices::NmeaError;
-using devices::NmeaLines;
-using devices::NmeaSentence;
+using sim::NmeaError;
+using sim::NmeaLines;
+using sim::NmeaSentence;
 
 std::vector<NmeaLines::Line> add(NmeaLines& lines, const std::string& text) {
   return lines.add(std::as_bytes(std::span(text.data(), text.size())));
@@ -18,30 +18,30 @@ TEST(Nmea, ChecksumsAreThoseOfTheExamples) {
   for (const char* sentence : {"$CAMPR,2,1,0.0101*7C", "$CAMPA,1,2*5D", "$CAMUA,1,2,1fab*20",
                                "$CAREV,000052,AUV,0.93.0.09*07", "$CACFG,SRC,1*33", "$CATXF,28*6E"}) {
     NmeaSentence parsed;
-    ASSERT_EQ(devices::parse_nmea(sentence, parsed), NmeaError::none) << sentence;
+    ASSERT_EQ(sim::parse_nmea(sentence, parsed), NmeaError::none) << sentence;
     std::string body = parsed.name();
     for (std::size_t i = 1; i <= parsed.count(); ++i) body += "," + parsed.at(i);
-    EXPECT_EQ(devices::nmea_sentence(body), sentence);
+    EXPECT_EQ(sim::nmea_sentence(body), sentence);
   }
 }
 
 TEST(Nmea, AChecksumMayBeMissingButMustBeRight) {
   NmeaSentence parsed;
-  EXPECT_EQ(devices::parse_nmea("$CCMPC,1,2", parsed), NmeaError::none);
+  EXPECT_EQ(sim::parse_nmea("$CCMPC,1,2", parsed), NmeaError::none);
   EXPECT_EQ(parsed.name(), "CCMPC");
   EXPECT_EQ(parsed.number(2, 0, 127), 2);
   EXPECT_EQ(parsed.number(2, 0, 1), std::nullopt);
   EXPECT_EQ(parsed.number(3, 0, 127), std::nullopt);
   EXPECT_EQ(parsed.at(3), "");
-  EXPECT_EQ(devices::parse_nmea("$CAMPA,1,2*5E", parsed), NmeaError::bad_checksum);
-  EXPECT_EQ(devices::parse_nmea("$CAMPA,1,2*5", parsed), NmeaError::bad_checksum);
-  EXPECT_EQ(devices::parse_nmea("$CAMPA,1,2*5D7", parsed), NmeaError::bad_checksum);
-  EXPECT_EQ(devices::parse_nmea("$CAMPA,1,2*", parsed), NmeaError::bad_checksum);
-  EXPECT_EQ(devices::parse_nmea("CAMPA,1,2*5D", parsed), NmeaError::no_sentence);
-  EXPECT_EQ(devices::parse_nmea("$", parsed), NmeaError::no_sentence);
-  EXPECT_EQ(devices::parse_nmea("$CC\x01MPC", parsed), NmeaError::no_sentence);
+  EXPECT_EQ(sim::parse_nmea("$CAMPA,1,2*5E", parsed), NmeaError::bad_checksum);
+  EXPECT_EQ(sim::parse_nmea("$CAMPA,1,2*5", parsed), NmeaError::bad_checksum);
+  EXPECT_EQ(sim::parse_nmea("$CAMPA,1,2*5D7", parsed), NmeaError::bad_checksum);
+  EXPECT_EQ(sim::parse_nmea("$CAMPA,1,2*", parsed), NmeaError::bad_checksum);
+  EXPECT_EQ(sim::parse_nmea("CAMPA,1,2*5D", parsed), NmeaError::no_sentence);
+  EXPECT_EQ(sim::parse_nmea("$", parsed), NmeaError::no_sentence);
+  EXPECT_EQ(sim::parse_nmea("$CC\x01MPC", parsed), NmeaError::no_sentence);
   // The rest of a line that was cut, and then a whole one.
-  EXPECT_EQ(devices::parse_nmea("$CCMP$CAMPA,1,2*5D", parsed), NmeaError::none);
+  EXPECT_EQ(sim::parse_nmea("$CCMP$CAMPA,1,2*5D", parsed), NmeaError::none);
   EXPECT_EQ(parsed.name(), "CAMPA");
 }
 
@@ -66,11 +66,11 @@ TEST(Nmea, ALineThatIsTooLongIsCutAndReported) {
 }
 
 TEST(Nmea, HexadecimalDigitsAreReadAndWritten) {
-  const auto bytes = devices::from_hex("00ffA5");
+  const auto bytes = sim::from_hex("00ffA5");
   ASSERT_TRUE(bytes);
-  EXPECT_EQ(devices::to_hex(*bytes), "00ffa5");
-  EXPECT_TRUE(devices::from_hex(""));
-  for (const char* bad : {"0", "0g", "-1", "0x", " 1"}) EXPECT_FALSE(devices::from_hex(bad)) << bad;
+  EXPECT_EQ(sim::to_hex(*bytes), "00ffa5");
+  EXPECT_TRUE(sim::from_hex(""));
+  for (const char* bad : {"0", "0g", "-1", "0x", " 1"}) EXPECT_FALSE(sim::from_hex(bad)) << bad;
 }
 
 }  // namespace

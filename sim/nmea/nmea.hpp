@@ -10,11 +10,11 @@
 #include "sim/bus/bus.hpp"
 #include "sim/state/state_archive.hpp"
 
-namespace devices {
+namespace sim {
 
-/// NMEA 0183 sentence, such as `$CCMPC,1,2*5E`.
+/// NMEA 0183 sentence, such as `$CCMPC,1,2*5E`; those of AIS begin with `!` in place of `$`.
 struct NmeaSentence {
-  std::vector<std::string> fields;  ///< the first is the name, without `$`
+  std::vector<std::string> fields;  ///< the first is the name, without the start character
 
   const std::string& name() const { return fields.front(); }
   /// Returns field `i`, where 1 is the field after the name; empty when there is none.
@@ -30,10 +30,10 @@ enum class NmeaError { none, no_sentence, bad_checksum };
 /// Returns the exclusive or of all characters.
 unsigned nmea_checksum(std::string_view body);
 /// Returns the sentence `$BODY*CHECKSUM`.
-std::string nmea_sentence(std::string_view body);
-/// Parses a line without its line end.  Text before the `$` is skipped; a checksum is optional, but must be correct
-/// when present.  A line with non-printable characters is not a sentence.
-NmeaError parse_nmea(std::string_view line, NmeaSentence& sentence);
+std::string nmea_sentence(std::string_view body, char start = '$');
+/// Parses a line without its line end.  Text before the start character is skipped; a checksum is optional, but must be
+/// correct when present.  A line with non-printable characters is not a sentence.
+NmeaError parse_nmea(std::string_view line, NmeaSentence& sentence, char start = '$');
 
 /// Splitter of a byte stream into lines.  Memory is bounded for any input.
 class NmeaLines {
@@ -44,7 +44,7 @@ class NmeaLines {
   };
   /// Returns the completed lines, without empty ones.
   std::vector<Line> add(std::span<const std::byte> bytes);
-  void visit_state(sim::StateArchive& archive) { archive(line_, too_long_); }
+  void visit_state(StateArchive& archive) { archive(line_, too_long_); }
 
   /// Maximum length of a line, sufficient for a frame of 256 bytes in hexadecimal digits.
   static constexpr std::size_t longest = 640;
@@ -57,6 +57,6 @@ class NmeaLines {
 /// Returns two lower-case hexadecimal digits for each byte.
 std::string to_hex(std::span<const std::byte> bytes);
 /// Decodes hexadecimal digits; none when the text is not an even number of them.
-std::optional<sim::Bytes> from_hex(std::string_view text);
+std::optional<Bytes> from_hex(std::string_view text);
 
-}  // namespace devices
+}  // namespace sim

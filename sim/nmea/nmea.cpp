@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "devices/common/nmea.hpp"
+#include "sim/nmea/nmea.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -7,7 +7,7 @@
 
 #include "sim/base/number.hpp"
 
-namespace devices {
+namespace sim {
 
 const std::string& NmeaSentence::at(std::size_t i) const {
   static const std::string none;
@@ -15,7 +15,7 @@ const std::string& NmeaSentence::at(std::size_t i) const {
 }
 
 std::optional<int> NmeaSentence::number(std::size_t i, int min, int max) const {
-  const std::optional<int> value = sim::exact_number<int>(at(i));
+  const std::optional<int> value = exact_number<int>(at(i));
   return value && *value >= min && *value <= max ? value : std::nullopt;
 }
 
@@ -25,14 +25,14 @@ unsigned nmea_checksum(std::string_view body) {
   return sum;
 }
 
-std::string nmea_sentence(std::string_view body) {
+std::string nmea_sentence(std::string_view body, char start) {
   char end[8];
   std::snprintf(end, sizeof end, "*%02X", nmea_checksum(body));
-  return "$" + std::string(body) + end;
+  return start + std::string(body) + end;
 }
 
-NmeaError parse_nmea(std::string_view line, NmeaSentence& sentence) {
-  const std::size_t begin = line.rfind('$');
+NmeaError parse_nmea(std::string_view line, NmeaSentence& sentence, char start) {
+  const std::size_t begin = line.rfind(start);
   if (begin == std::string_view::npos) return NmeaError::no_sentence;
   std::string_view body = line.substr(begin + 1);
   // Verify the checksum.
@@ -87,9 +87,9 @@ std::string to_hex(std::span<const std::byte> bytes) {
   return text;
 }
 
-std::optional<sim::Bytes> from_hex(std::string_view text) {
+std::optional<Bytes> from_hex(std::string_view text) {
   if (text.size() % 2 != 0) return {};
-  sim::Bytes bytes;
+  Bytes bytes;
   for (std::size_t i = 0; i < text.size(); i += 2) {
     unsigned value = 0;
     const auto [end, error] = std::from_chars(text.data() + i, text.data() + i + 2, value, 16);
@@ -99,4 +99,4 @@ std::optional<sim::Bytes> from_hex(std::string_view text) {
   return bytes;
 }
 
-}  // namespace devices
+}  // namespace sim
