@@ -82,7 +82,7 @@ std::vector<std::string> alpha_run(const std::string& duration_s, const std::vec
 
 const std::vector<std::string> in_lockstep{"--speed", "max",
                                            "--set",   "bridges.moos.client=alpha",
-                                           "--set",   "bridges.moos.args.in_lockstep=true",
+                                           "--set",   "bridges.moos.args.lockstep=true",
                                            "--set",   "bridges.moos.args.answer=HELM_TIME"};
 
 TEST(Moos, AHelmOfTheCommunitySailsTheAlphaMissionAndTheRunRepeats) {
@@ -132,7 +132,7 @@ TEST(Moos, AWorldWithAnotherOriginEndsTheBridgeWithOneMessage) {
   write_file(file, "LatOrigin = 42.3584\nLongOrigin = -71.0876\n");
   const Ended ended =
       run_shoal(alpha_run("20", {"--speed", "max", "--set", "bridges.moos.args.moos=" + file, "--set",
-                                 "bridges.moos.client=alpha", "--set", "bridges.moos.args.in_lockstep=true"}));
+                                 "bridges.moos.client=alpha", "--set", "bridges.moos.args.lockstep=true"}));
   EXPECT_EQ(ended.exit_code, 1) << ended.output << ended.errors;  // a program of the world has failed
   EXPECT_THAT(ended.errors, HasSubstr("LatOrigin and LongOrigin are 42.3584, -71.0876, and 'origin' of world "
                                       "'moos_alpha' is 43.8253, -70.3304"));

@@ -49,11 +49,6 @@ int take_part(shoal::Client& client, const Participation& participation, State& 
   return take_part(client, participation, Memory(state, participation.rewind_s), decide);
 }
 
-/// Follows the run without lockstep and calls `decide` each period of simulated time, until the run ends or a signal
-/// arrives.  Returns the exit code.
-int follow(shoal::Client& client, const Participation& participation,
-           const std::function<void(std::int64_t utime)>& decide);
-
 /// Runs a program: reports std::invalid_argument and sim::ConfigError as wrong usage, any other exception as a
 /// bus error.
 int run_program(const char* name, const std::function<int()>& program);

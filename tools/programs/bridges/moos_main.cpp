@@ -224,7 +224,7 @@ void declare(command_line::DeclaredOptions& options, Options& moos) {
   options.flag("no_node_report", moos.no_node_report, "posts no NODE_REPORT_LOCAL, which pNodeReporter makes as well");
   options.text("type", "TYPE", moos.node.type, "type of the vehicle in node reports");
   options.number("length_m", moos.node.length_m, 0.1, 1000, "length of the vehicle in node reports");
-  options.flag("in_lockstep", moos.participation.in_lockstep, "joins the lockstep: the run waits at each tick");
+  options.flag("lockstep", moos.participation.in_lockstep, "joins the lockstep: the run waits at each tick");
   options.text("answer", "VARIABLE", moos.answer,
                "in lockstep, each tick waits until the community has posted SHOAL_TIME in this variable");
   options.number("answer_timeout_s", moos.answer_timeout_s, 0.1, 3600, "wall seconds to wait for the answer");

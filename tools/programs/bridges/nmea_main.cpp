@@ -25,7 +25,7 @@ using bridges::nmea::NmeaServer;
 struct Options {
   std::string name = "nmea", vehicle;
   std::string listen = "127.0.0.1:10110", udp;
-  bool steer = false, truth = false, lockstep = false;
+  bool steer = false, truth = false;
   double variation_deg = 0;
   autonomy::Participation participation;
 };
@@ -187,7 +187,6 @@ int serve(const Options& options) {
   if (server.port() != 0) notes("listens at port " + std::to_string(server.port()));
   Door door(client, server, notes, options);
   const auto tick = [&](std::int64_t utime) { door.tick(utime); };
-  if (!options.lockstep) return autonomy::follow(client, options.participation, tick);
   struct Nothing {};  // after a rewind all that it knows is reported again
   Nothing state;
   return autonomy::take_part(client, options.participation, state, tick);
@@ -206,7 +205,8 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
                   "magnetic variation of headings to steer, positive to the east");
   declared.flag("truth", options.truth,
                 "true position and heading in place of devices, and all other vehicles as AIS targets");
-  declared.flag("lockstep", options.lockstep, "joins the lockstep, so that the world waits at each period");
+  declared.flag("lockstep", options.participation.in_lockstep,
+                "joins the lockstep, so that the world waits at each period");
   options.participation.declare(declared);
   autonomy::set_help_end(
       declared,
@@ -222,6 +222,7 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
 int run(int argc, char** argv) {
   Options options;
   options.participation.period_s = 1;
+  options.participation.in_lockstep = false;
   CLI::App app{"Instruments of a vehicle for chart plotters: sentences of NMEA 0183 and AIS over TCP and UDP.",
                "shoal-nmea"};
   command_line::DeclaredOptions declared(app);
