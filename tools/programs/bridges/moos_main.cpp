@@ -72,7 +72,7 @@ class Inbox {
     if (answer_.empty()) return;
     std::unique_lock lock(mutex_);
     if (!arrived_.wait_for(lock, std::chrono::duration<double>(timeout_s),
-                           [&] { return answered_s_ >= time_s - 1e-5; }))
+                           [&] { return std::abs(answered_s_ - time_s) < 1e-5; }))
       throw std::runtime_error("the community did not post '" + answer_ + "' within " + std::to_string(timeout_s) +
                                " s");
   }
@@ -129,7 +129,7 @@ class Bridge {
     if (!options_.answer.empty())
       moos_.await_open(std::chrono::milliseconds(std::llround(1000 * options_.answer_timeout_s)));
     const auto decide = [this](std::int64_t utime) { exchange(utime); };
-    const int exit_code = autonomy::take_part(client_, options_.participation, memory_, decide);
+    const int exit_code = autonomy::take_part(client_, options_.participation, report_due_, decide);
     if (inbox_.refused() > 0)
       std::cerr << "shoal-moos: " << inbox_.refused() << " values were refused: no number, or no modem message\n";
     return exit_code;
@@ -163,7 +163,8 @@ class Bridge {
   void exchange(std::int64_t utime) {
     inbox_.set_time(utime);
     const double time_s = 1e-6 * static_cast<double>(utime);
-    if (!options_.no_node_report && utime >= report_due_) {
+    // Also when a new run has begun, with an earlier time.
+    if (!options_.no_node_report && (utime >= report_due_ || utime < report_due_ - report_period_us)) {
       moos_.notify(bridges::node_report(options_.node, navigation_, moos_time_s(file_.time_warp)));
       report_due_ = utime + report_period_us;
     }
@@ -183,7 +184,7 @@ class Bridge {
     if (pace_warned_ || elapsed_s < 10) return;
     const double pace = (time_s - pace_start_->first) / elapsed_s;
     pace_start_ = {time_s, wall_s};
-    if (std::abs(pace / file_.time_warp - 1) < 0.2) return;
+    if (pace <= 0 || std::abs(pace / file_.time_warp - 1) < 0.2) return;  // the world may have been rewound
     pace_warned_ = true;
     std::cerr << "shoal-moos: simulated time runs " << sim::rounded_to(pace, 2)
               << " times as fast as wall time, MOOSTimeWarp is " << file_.time_warp << ": run with --speed "
@@ -195,10 +196,9 @@ class Bridge {
   const bridges::MoosFile& file_;
   VehicleNavigation navigation_;
   bool knows_world_ = false;
-  std::int64_t report_due_ = 0;
+  std::int64_t report_due_ = 0;                          // utime; it goes back with the world
   std::optional<std::pair<double, double>> pace_start_;  // simulated and wall time
   bool pace_warned_ = false;
-  int memory_ = 0;  // what goes back with the world: nothing
   Inbox inbox_;
   shoal::Client client_;
   MoosConnection moos_;
