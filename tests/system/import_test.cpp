@@ -162,4 +162,30 @@ TEST(ImportUrdf, RefusesWrongArguments) {
   EXPECT_THAT(unwritable.errors, HasSubstr("no such folder"));
 }
 
+TEST(ImportSdf, MakesAVehicleThatPassesTheCheckAndRunsInWater) {
+  const ScratchFolder folder;
+  const std::string sdf = folder.file("m.sdf"), output = folder.file("m.yaml");
+  const std::string inertial =
+      "<inertial><mass>10</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial>";
+  write_file(
+      sdf, "<sdf version='1.9'><model name='m'><link name='hull'>" + inertial +
+               "<collision name='c'><pose>0 0 0.1 0 0 0</pose><geometry><box><size>0.5 0.2 0.1</size></box></geometry>"
+               "</collision><sensor name='imu' type='imu'/></link><link name='propeller'><pose>-0.3 0 0 0 0 0</pose>" +
+               inertial +
+               "</link><joint name='p' type='revolute'><parent>hull</parent><child>propeller</child><axis><xyz>1 0 0"
+               "</xyz></axis></joint>\n<plugin name='gz::sim::systems::Thruster' filename='t'><joint_name>p"
+               "</joint_name></plugin><plugin name='gz::sim::systems::Hydrodynamics' filename='h'><link_name>hull"
+               "</link_name><xDotU>-5</xDotU><xUabsU>-20</xUabsU><yVabsR>-1</yVabsR></plugin></model></sdf>\n");
+  const Ended ended = run_shoal({"import", "sdf", sdf, "--output", output});
+  EXPECT_EQ(ended.exit_code, 0) << ended.errors;
+  EXPECT_THAT(ended.output, HasSubstr("vehicle 'm': 1 body, 0 joints, 0 servos, 0 mesh files"));
+  EXPECT_EQ(ended.errors, sdf + ":1: joint 'p' is fixed: a `thruster` does not turn its propeller\n");
+  const Ended checked = run_shoal({"check", output});
+  EXPECT_EQ(checked.exit_code, 0) << checked.errors;
+  write_file(folder.file("w.yaml"),
+             "shoal: 1\nrun: {duration_s: 1, speed: max}\nmedium: {water: {surface_m: 10}}\n"
+             "vehicles: [{name: v, file: m.yaml}]\n");
+  EXPECT_EQ(run_shoal({"run", folder.file("w.yaml"), "--bus", "none"}).exit_code, 0);
+}
+
 }  // namespace

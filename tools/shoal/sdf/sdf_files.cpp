@@ -11,13 +11,15 @@ namespace fs = std::filesystem;
 
 const XmlFile& SdfFiles::open(const std::string& path) {
   const auto known = files_.find(path);
-  return known != files_.end() ? known->second : add(path, read_robot_file(path));
+  File& file = known != files_.end() ? known->second : add(path, read_robot_file(path));
+  bytes_ += file.bytes;
+  if (bytes_ > 2 * max_robot_file_bytes)
+    refuse_file(path, "is one too many: all files, as often as they are included, have more than 32 MiB");
+  return file.xml;
 }
 
-const XmlFile& SdfFiles::add(const std::string& path, const std::string& text) {
-  bytes_ += text.size();
-  if (bytes_ > 4 * max_robot_file_bytes) refuse_file(path, "is one too many: all files have more than 64 MiB");
-  return files_.try_emplace(path, text, path, "sdf").first->second;
+SdfFiles::File& SdfFiles::add(const std::string& path, const std::string& text) {
+  return files_.try_emplace(path, text, path).first->second;
 }
 
 std::string SdfFiles::find_model(const XmlElement& uri) const {

@@ -14,17 +14,24 @@ class SdfFiles {
  public:
   SdfFiles(const std::string& path, const FolderOptions& options) : folders_(path, options) {}
 
-  /// Parses a file once.  Throws sim::ConfigError; all files together may have 64 MiB.
+  /// A file and its size.
+  struct File {
+    File(const std::string& text, const std::string& path) : xml(text, path, "sdf"), bytes(text.size()) {}
+    XmlFile xml;
+    std::size_t bytes;
+  };
+
+  /// Parses a file once.  Throws sim::ConfigError; all files may have 32 MiB, each counted as often as it is opened.
   const XmlFile& open(const std::string& path);
   /// Adds a file by its text.
-  const XmlFile& add(const std::string& path, const std::string& text);
+  File& add(const std::string& path, const std::string& text);
   /// Path of the file that a `<uri>` names: of a folder, the newest one that its `model.config` names, or else
   /// `model.sdf`.  Throws sim::ConfigError.
   std::string find_model(const XmlElement& uri) const;
 
  private:
   RobotFolders folders_;
-  std::map<std::string, XmlFile> files_;
+  std::map<std::string, File> files_;
   std::size_t bytes_ = 0;
 };
 

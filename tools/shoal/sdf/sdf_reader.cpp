@@ -156,6 +156,9 @@ class SdfModelReader {
                        .attached_to = child,
                        .placed_by = "",
                        .place = joint.place()});
+    // A tree has fewer joints than links.
+    if (joints_.size() >= max_robot_links)
+      joint.refuse(fmt::format("a robot must have at most {} joints", max_robot_links));
     joints_.push_back({joint, scope, version});
   }
   /// Adds a model in another one.  `posed`: the element with its pose, the model or its `<include>`.

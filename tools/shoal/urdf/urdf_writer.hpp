@@ -7,7 +7,7 @@
 
 namespace tools {
 
-/// Returns a robot as URDF.  Numbers are exact: reading them gives the same doubles.
+/// Returns a robot as URDF.  Reading it gives the same numbers, and rotations to the last digits.
 std::string urdf_text(const RobotDescription& robot);
 
 }  // namespace tools

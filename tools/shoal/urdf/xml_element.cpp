@@ -86,17 +86,21 @@ std::vector<XmlElement> XmlElement::children() const {
 }
 
 std::vector<XmlElement> XmlElement::children(std::string_view name) const {
+  const std::string key(name);
   std::vector<XmlElement> found;
-  for (const XmlElement& child : children())
-    if (child.name() == name) found.push_back(child);
+  for (const auto* child = element_->FirstChildElement(key.c_str()); child != nullptr;
+       child = child->NextSiblingElement(key.c_str()))
+    found.emplace_back(*child, file_, who_);
   return found;
 }
 
 std::optional<XmlElement> XmlElement::child(std::string_view name) const {
-  const std::vector<XmlElement> found = children(name);
-  if (found.size() > 1) found[1].refuse(fmt::format("has more than one <{}>", name));
-  if (found.empty()) return std::nullopt;
-  return found.front();
+  const std::string key(name);
+  const tinyxml2::XMLElement* const found = element_->FirstChildElement(key.c_str());
+  if (found == nullptr) return std::nullopt;
+  if (const auto* second = found->NextSiblingElement(key.c_str()))
+    XmlElement(*second, file_, who_).refuse(fmt::format("has more than one <{}>", name));
+  return XmlElement(*found, file_, who_);
 }
 
 XmlElement XmlElement::required_child(std::string_view name) const {

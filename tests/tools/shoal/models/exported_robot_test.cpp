@@ -70,7 +70,7 @@ void expect_same(const sim::VehicleConfig& vehicle) {
     const bool turned = same->first != joint.bodies.front();
     EXPECT_TRUE(same->axis_V.isApprox((turned ? -1 : 1) * joint.axis1.axis.normalized(), 1e-9));
     EXPECT_EQ(same->low_stop.has_value(), joint.axis1.low_stop.has_value());
-    if (joint.axis1.low_stop) EXPECT_NEAR(*same->low_stop, *joint.axis1.low_stop, 1e-12);
+    EXPECT_NEAR(same->low_stop.value_or(0), joint.axis1.low_stop.value_or(0), 1e-12);
     EXPECT_NEAR(same->damping, joint.axis1.damping, 1e-12);
   }
 }
