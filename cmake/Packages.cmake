@@ -77,12 +77,15 @@ shoal_package(shoal-doc SECTION doc ALL COMPONENTS doc
 devices, messages and metrics, and the interfaces for plugins and clients, as
 HTML.")
 if(SHOAL_PYTHON)
+  # The module is for the version of Python with which it was built.
+  execute_process(COMMAND ${SHOAL_PYTHON_INTERPRETER} -c "import sys; print(f'python3 (>= 3.{sys.version_info.minor}), python3 (<< 3.{sys.version_info.minor + 1})', end='')"
+                  OUTPUT_VARIABLE python_package COMMAND_ERROR_IS_FATAL ANY)
   shoal_package(python3-shoal SECTION python COMPONENTS python
     SUMMARY "Python package of the Shoal simulator"
     TEXT "Worlds in the process of Python, clients of a run over LCM, records as NumPy
 arrays, many worlds at once with the interfaces of Gymnasium and PettingZoo, and
 plots of results."
-    DEPENDS "shoal (= ${PROJECT_VERSION}), python3 (>= 3.11), python3 (<< 3.12), python3-numpy"
+    DEPENDS "shoal (= ${PROJECT_VERSION}), ${python_package}, python3-numpy"
     RECOMMENDS "python3-matplotlib, python3-pandas")
   set(CPACK_COMPONENTS_ALL programs client device doc python)
 else()

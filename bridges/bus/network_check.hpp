@@ -23,6 +23,12 @@ struct Finding {
 std::vector<Finding> check_network(const std::string& url = {},
                                    std::chrono::milliseconds time_limit = std::chrono::milliseconds(3000));
 
+/// Checks what of this URL reaches another machine: its name, the route, a tcpq server on it (port 7700, or that of the
+/// URL), and multicast with a ttl above 0, for which the other machine must make the same check at the same time or run
+/// something on the bus.  The last finding sums up.  Opens no LCM; `time_limit`: of each part.
+std::vector<Finding> check_peer(const std::string& host, const std::string& url = {},
+                                std::chrono::milliseconds time_limit = std::chrono::milliseconds(3000));
+
 /// Returns whether messages on this bus may come from or go to other machines: for multicast with a ttl above 0, and
 /// for tcpq, whose server may be reachable from anywhere.  Returns true when in doubt.  `resolved_url`: result of
 /// resolve_lcm_url().  Programs that forward messages from one bus to another are not detected.

@@ -5,10 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,7 +14,7 @@
 #include <vector>
 
 #include "bridges/foxglove/foxglove_text.hpp"
-#include "bridges/ros2/topic_table.hpp"
+#include "bridges/ros2/topic_hub.hpp"
 #include "bridges/web/web_exchange.hpp"
 #include "bridges/web/web_protocol.hpp"
 
@@ -39,20 +37,17 @@ struct Request {
 };
 
 /// Subprotocols `foxglove.sdk.v1` and `foxglove.websocket.v1`, which are the same, without the network: passes the
-/// messages of LCM channels on as topics in CDR (ros2::TopicTable), each only while a client has subscribed to it.
+/// messages of LCM channels on as topics in CDR (ros2::TopicHub), each only while a client has subscribed to it.
 ///
 /// Its functions for all threads only put something into the box of a WebExchange; in the thread of the server
 /// deliver() encodes it.  A client that does not read loses its oldest messages, and gets a warning with their number.
-class Protocol final : public WebProtocol, private ros2::TopicSink {
+class Protocol final : public WebProtocol {
  public:
-  static constexpr std::size_t max_queued_bytes = std::size_t{8} << 20;        ///< that wait for one client
-  static constexpr std::size_t max_queued_messages = 1024;                     ///< that wait for one client
-  static constexpr std::size_t max_latched_bytes = std::size_t{32} << 20;      ///< of latched topics, for one client
-  static constexpr std::size_t max_undelivered_bytes = std::size_t{16} << 20;  ///< in the box
-  static constexpr std::size_t max_undelivered_messages = 8192;                ///< in the box
-  static constexpr std::size_t max_waiting_requests = 32;                      ///< of one client
-  static constexpr std::size_t max_waiting_texts = 1000;                       ///< answers to one client
-  static constexpr std::size_t max_channels = 65'535;                          ///< further LCM channels have no topics
+  static constexpr std::size_t max_queued_bytes = std::size_t{8} << 20;    ///< that wait for one client
+  static constexpr std::size_t max_queued_messages = 1024;                 ///< that wait for one client
+  static constexpr std::size_t max_latched_bytes = std::size_t{32} << 20;  ///< of latched topics, for one client
+  static constexpr std::size_t max_waiting_requests = 32;                  ///< of one client
+  static constexpr std::size_t max_waiting_texts = 1000;                   ///< answers to one client
 
   explicit Protocol(WebPost post)
       : exchange_([this](Box box) { deliver(std::move(box)); }, max_waiting_requests, std::move(post)) {}
@@ -86,14 +81,7 @@ class Protocol final : public WebProtocol, private ros2::TopicSink {
 
  private:
   friend class Session;
-  using Bytes = std::shared_ptr<const std::string>;
 
-  /// Message of a channel, or a jump if the channel is empty.
-  struct Entry {
-    std::int64_t utime = 0;
-    std::string channel;
-    std::vector<std::byte> payload;
-  };
   struct Reply {
     Request request;
     bool ok = false;
@@ -101,37 +89,19 @@ class Protocol final : public WebProtocol, private ros2::TopicSink {
   };
   /// Input of other threads since deliver().
   struct Box : WebBox {
-    std::vector<Entry> entries;
+    ros2::WaitingMessages waiting;
     std::optional<ServerInfo> info;
     std::optional<std::int64_t> time;
     std::optional<PlaybackState> state;
     std::vector<Reply> replies;
   };
-  /// LCM channel, as the other threads see it.
-  struct Channel {
-    std::uint64_t fingerprint = 0;
-    std::uint64_t seen = 0;
-    bool subscribed = false;  ///< a client has subscribed to one of its topics
-  };
-  /// Session and topic to which a last message is sent again.
-  struct Target {
-    Session* session;
-    std::size_t topic;
-  };
 
   void deliver(Box box);
-  void process(Entry& entry);
   void process_jump(std::int64_t utime);
   void process(const Reply& reply);
   void process(const PlaybackState& state);
-  void encode(const Entry& entry);
-  bool wants(const ros2::Topic& topic) override;
-  bool take(const ros2::Topic& topic, std::span<const std::byte> bytes) override;
-  void relate(const ros2::Topic& topic);
   /// Counts a subscription that begins (1) or ends (-1).
   void count_subscription(std::size_t topic, int change);
-  void update_wanted(const std::string& channel);
-  void send_latched(Session& session, std::size_t topic);
   void left(const Session& session);
   /// Warns once that a client does not get all messages.
   void warn_of_drops();
@@ -139,20 +109,13 @@ class Protocol final : public WebProtocol, private ros2::TopicSink {
   std::function<bool(std::string_view)> is_token_;  // empty: none is needed
   std::atomic<std::uint64_t> subscriptions_ = 0;
   WebExchange<Box, Request, Session> exchange_;
-  std::map<std::string, Channel, std::less<>> channels_;  // under the lock of the box
+  ros2::TopicHub topics_;
 
   // Members of the server thread:
   std::optional<ServerInfo> info_;
   PlaybackState state_;
   std::optional<std::int64_t> time_;
-  ros2::TopicTable table_;
   bool warned_of_drops_ = false;
-  std::vector<int> subscribers_;  // by topic
-  std::vector<std::set<std::string>> channels_of_topic_;
-  std::map<std::string, std::set<std::size_t>, std::less<>> topics_of_channel_;
-  std::map<std::string, Entry, std::less<>> last_;  // of channels with latched topics
-  const Entry* present_ = nullptr;                  // that is being encoded
-  std::optional<Target> target_;
 };
 
 }  // namespace bridges::foxglove

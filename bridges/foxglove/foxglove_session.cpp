@@ -73,7 +73,7 @@ void Session::receive_binary(std::string_view bytes) {
 void Session::subscribe(const Subscription& subscription) {
   const std::size_t topic = subscription.channel;
   const std::string who = "subscription " + std::to_string(subscription.id) + ": ";
-  if (topic >= advertised_ || protocol_.table_.topics()[topic].encoding != "cdr")
+  if (topic >= advertised_ || protocol_.topics_.topics()[topic].encoding != "cdr")
     return report(StatusLevel::error, who + "no channel " + std::to_string(topic));
   if (topic_of_.contains(subscription.id)) return report(StatusLevel::error, who + "its id is in use");
   if (by_topic_.contains(topic))
@@ -81,7 +81,7 @@ void Session::subscribe(const Subscription& subscription) {
   topic_of_.emplace(subscription.id, topic);
   by_topic_.emplace(topic, subscription.id);
   protocol_.count_subscription(topic, 1);
-  if (protocol_.table_.topics()[topic].latched) protocol_.send_latched(*this, topic);
+  if (protocol_.topics_.topics()[topic].latched) protocol_.topics_.send_latched(*this, topic);
 }
 
 void Session::unsubscribe(std::uint32_t id) {
@@ -162,10 +162,10 @@ void Session::answer(std::string bytes, bool is_text) {
   answers_.push_back({std::make_shared<const std::string>(std::move(bytes)), is_text});
 }
 
-void Session::push(const ros2::Topic& topic, std::int64_t utime, const Bytes& payload, const std::string& channel) {
-  Data data{by_topic_.at(topic.number), utime, payload, topic.latched ? channel : ""};
+void Session::push(const ros2::Topic& topic, const ros2::ChannelMessage& from, const Bytes& cdr) {
+  Data data{by_topic_.at(topic.number), from.utime, cdr, topic.latched ? from.channel : ""};
   if (topic.latched) return push_latched(std::move(data));
-  const std::size_t bytes = payload->size() + message_bytes;
+  const std::size_t bytes = cdr->size() + message_bytes;
   while (!data_.empty() &&
          (data_.size() >= Protocol::max_queued_messages || data_.bytes() + bytes > Protocol::max_queued_bytes)) {
     data_.pop();
@@ -237,7 +237,7 @@ bool Session::next(WebFrame& frame) {
 /// Returns the next part of the topics that the client does not know; empty: it knows all.
 std::string Session::next_advertisement() {
   constexpr std::size_t at_once = 100;
-  const std::vector<ros2::Topic>& topics = protocol_.table_.topics();
+  const std::vector<ros2::Topic>& topics = protocol_.topics_.topics();
   std::vector<const ros2::Topic*> fresh;
   for (; advertised_ < topics.size() && fresh.size() < at_once; ++advertised_)
     if (topics[advertised_].encoding == "cdr") fresh.push_back(&topics[advertised_]);

@@ -18,16 +18,17 @@
 namespace bridges::foxglove {
 
 /// One client of Protocol: its subscriptions, and what waits for it.
-class Session final : public WebSession {
+class Session final : public WebSession, public ros2::TopicReader {
  public:
   Session(Protocol& protocol, WebLink& link) : protocol_(protocol), link_(link) {}
   ~Session() override;
   void receive(std::string_view bytes, bool is_text) override;
   bool next(WebFrame& frame) override;
+  bool has_subscribed(std::size_t topic) const override { return by_topic_.contains(topic); }
+  void push(const ros2::Topic& topic, const ros2::ChannelMessage& from, const Bytes& cdr) override;
 
  private:
   friend class Protocol;
-  using Bytes = Protocol::Bytes;
 
   /// Message that waits.
   struct Data {
@@ -48,8 +49,6 @@ class Session final : public WebSession {
   /// Queues an answer, and closes the connection of a client that does not read its answers.
   void answer(std::string bytes, bool is_text = true);
   void report(StatusLevel level, std::string_view text) { answer(status_text(level, text)); }
-  bool has_subscribed(std::size_t topic) const { return by_topic_.contains(topic); }
-  void push(const ros2::Topic& topic, std::int64_t utime, const Bytes& payload, const std::string& channel);
   void push_latched(Data data);
   /// Counts messages that this client does not get.
   void count_dropped(std::uint64_t count);

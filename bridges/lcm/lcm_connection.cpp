@@ -67,8 +67,8 @@ LcmConnection::LcmConnection(const std::string& url)
   const LcmEndpoint endpoint = lcm_endpoint(url_);
   is_tcp_ = endpoint.kind == "tcpq";
   // Checked here, so that the error of a missing server says how to start one.
-  if (is_tcp_) require_tcp_server(url_, endpoint);
-  lcm_.reset(lcm_create(url_.c_str()));
+  const std::string url_of_liblcm = is_tcp_ ? require_tcp_server(url_, endpoint) : url_;
+  lcm_.reset(lcm_create(url_of_liblcm.c_str()));
   if (!lcm_) refuse_url(url_, "LCM cannot be used: no route for multicast, or the port is taken; run `shoal doctor`");
   if (endpoint.kind == "udpm")
     open_udp(endpoint);

@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -129,7 +130,7 @@ LcmEndpoint lcm_endpoint(const std::string& resolved_url) {
   return endpoint_of(resolved_url, split_url(resolved_url));
 }
 
-void require_tcp_server(const std::string& url, const LcmEndpoint& endpoint) {
+std::string require_tcp_server(const std::string& url, const LcmEndpoint& endpoint) {
   addrinfo hints{};
   hints.ai_family = AF_INET;
   hints.ai_socktype = SOCK_STREAM;
@@ -152,11 +153,14 @@ void require_tcp_server(const std::string& url, const LcmEndpoint& endpoint) {
         getsockopt(fd, SOL_SOCKET, SO_ERROR, &error, &size);
     }
   }
+  std::array<char, INET_ADDRSTRLEN> numeric{};
+  inet_ntop(AF_INET, &reinterpret_cast<const sockaddr_in*>(found->ai_addr)->sin_addr, numeric.data(), numeric.size());
   freeaddrinfo(found);
   if (fd >= 0) close(fd);
   if (error != 0)
     refuse_url(url, "no LCM server at " + endpoint.address + ":" + port + " (" + std::strerror(error) +
-                        "); start one (java lcm.lcm.TCPService, package liblcm-java) or use udpm://");
+                        "); start one (shoal tcpq) or use udpm://");
+  return "tcpq://" + std::string(numeric.data()) + ":" + port;
 }
 
 void refuse_url(const std::string& url, const std::string& what) {

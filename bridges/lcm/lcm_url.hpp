@@ -34,7 +34,8 @@ LcmEndpoint lcm_endpoint(const std::string& resolved_url);
 /// Throws BusError with the URL.
 [[noreturn]] void refuse_url(const std::string& url, const std::string& what);
 
-/// Throws BusError when no LCM server answers there: liblcm would retry forever, and then abort.
-void require_tcp_server(const std::string& url, const LcmEndpoint& endpoint);
+/// Returns the URL with the numeric address of its host, because liblcm 1.3.1 takes any name for this machine.  Throws
+/// BusError when no LCM server answers there: liblcm would retry forever, and then abort.
+std::string require_tcp_server(const std::string& url, const LcmEndpoint& endpoint);
 
 }  // namespace bridges

@@ -295,13 +295,15 @@ void LockstepService::check_time(const std::string& client, Pending& requested, 
 /// Lists all members, because clients ignore a last tick that does not list them; clients that cannot answer are not
 /// waited for.
 void LockstepService::publish_end(const Wait& wait, milliseconds limit) {
+  constexpr int max_extensions = 10;
   pending_.clear();
   lockstep_.request_all(world_.step_number());
   for (const auto& [client, dropped] : dropped_) notify_dropped(dropped, client);
-  // Repeat the last tick until all clients have confirmed.
-  const Clock::time_point end = Clock::now() + limit;
-  milliseconds interval = first_resend_interval;
-  Clock::time_point send_at = Clock::now();
+  // Repeat the last tick until all clients have confirmed.  Without back-off: a client that misses it waits without
+  // success.
+  const Clock::time_point start = Clock::now();
+  Clock::time_point end = start + limit;
+  Clock::time_point send_at = start;
   while (true) {
     std::vector<std::string> names;
     // Collect the clients that have not answered.
@@ -311,13 +313,14 @@ void LockstepService::publish_end(const Wait& wait, milliseconds limit) {
       names.push_back(name);
       if (member.terms.session == 0 || !summary_of(name).ended.empty()) continue;
       is_awaited = true;
-      pending_.try_emplace(name);
+      // A client that requests messages of the last tick is alive, and is given more time.
+      const Pending& pending = pending_[name];
+      end = std::max(end, std::min(pending.serve_after + limit, start + max_extensions * limit));
     }
     const Clock::time_point now = Clock::now();
     if (now >= send_at) {
       publish_tick(names, true);
-      send_at = now + interval;
-      interval = next_resend_interval(interval);
+      send_at = now + first_resend_interval;
     }
     if (!is_awaited || now >= end) break;
     wait(milliseconds(10));

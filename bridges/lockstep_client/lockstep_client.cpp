@@ -32,6 +32,8 @@ constexpr milliseconds slice{50};
 constexpr int max_requests = 20;
 /// Maximum wait for the confirmation of a leave.
 constexpr milliseconds time_to_leave{1000};
+/// Maximum wait for the messages of a last tick: the simulator may have ended, and answers no more.
+constexpr milliseconds time_to_end{5000};
 
 /// Decodes a message; none when the payload is not a valid M, which any program may publish.
 template <class M>
@@ -101,19 +103,18 @@ void LockstepClient::send_request(const std::string& command, std::int32_t id, d
 }
 
 void LockstepClient::request(const std::string& command, double value, const std::string& text,
-                             Clock::time_point deadline, bool heed_stop, const std::function<bool()>& is_complete) {
+                             Clock::time_point deadline, const std::function<bool()>& is_complete) {
   const std::int32_t id = ++request_id_;
   if (command == "join") join_id_ = id;
   answered_id_.reset();
   milliseconds interval = first_resend_interval;
   // UDP loses messages, so the request is repeated, less and less often, with the same id: a late answer to an
   // earlier copy still counts.
-  while (Clock::now() < deadline && !(stop_ && heed_stop)) {
+  while (Clock::now() < deadline && !stop_) {
     send_request(command, id, value, text);
     const auto resend = std::min(deadline, Clock::now() + interval);
-    // A leave has little time, and the world waits for its client if all copies are lost.
-    if (command != "leave") interval = next_resend_interval(interval);
-    while (auto message = wait(resend, heed_stop)) {
+    interval = next_resend_interval(interval);
+    while (auto message = wait(resend)) {
       take(std::move(*message));
       if (answered_id_ != id) continue;
       if (!refusal_.empty()) throw BusError("the simulator rejects '" + name_ + "': " + refusal_);
@@ -123,7 +124,7 @@ void LockstepClient::request(const std::string& command, double value, const std
       throw BusError("the run of '" + name_ + "' was over before its '" + command + "' was answered");
   }
   const std::string where = " on " + lcm_.url();
-  if (stop_ && heed_stop) throw BusError("'" + name_ + "' was stopped while it waited for a simulator" + where);
+  if (stop_) throw BusError("'" + name_ + "' was stopped while it waited for a simulator" + where);
   if (command == "spawn")
     throw BusError("the 'spawn' of '" + name_ + "' was not answered in time" + where +
                    "; the world may wait for another client");
@@ -153,7 +154,7 @@ shoal::sim_vehicle_t LockstepClient::spawn(const std::string& text, milliseconds
   spawned_.clear();
   // The report is published before the reply, and both again when the request is repeated.
   const auto name = [this] { return granted_.substr(0, granted_.find(':')); };
-  request("spawn", 0, text, deadline, true, [&] { return spawned_.contains(name()); });
+  request("spawn", 0, text, deadline, [&] { return spawned_.contains(name()); });
   return spawned_.at(name());
 }
 
@@ -164,7 +165,7 @@ void LockstepClient::request_join(Clock::time_point deadline) {
                                  .on_timeout = options_.on_timeout.value_or(sim::OnTimeout::end_run),
                                  .timeout_s = options_.timeout_s,
                                  .agreed = options_.on_timeout.has_value()};
-  request("join", period_s_, text_of(terms), deadline, true);
+  request("join", period_s_, text_of(terms), deadline);
   channels_reported_ = reported;
 }
 
@@ -317,6 +318,7 @@ void LockstepClient::take_request(std::span<const std::byte> payload) {
   head.session = session_;
   head.sequence = sequence_;
   head.of_client = 1;
+  asked_ = Clock::now();
   outbox_.send_again(head, question->first,
                      [this](const shoal::sim_resent_t& bundle) { send(bundle_channel, shoal::encode(bundle)); });
 }
@@ -396,13 +398,16 @@ bool LockstepClient::next_tick(shoal::sim_tick_t& tick) {
     }
     // Request missing messages, and wait for the next message.
     if (incomplete_) request_when_due();
-    const bool forever = silence_limit_.count() == 0;
-    auto until = forever ? Clock::time_point::max() : received + silence_limit_;
+    milliseconds limit = silence_limit_;
+    if (is_last_tick()) limit = limit.count() == 0 ? time_to_end : std::min(limit, time_to_end);
+    const bool forever = limit.count() == 0;
+    auto until = forever ? Clock::time_point::max() : received + limit;
     if (incomplete_) until = std::min(until, incomplete_->ask_at);
     if (auto message = wait(until)) {
-      received = Clock::now();
+      // Its own requests for missing messages come back from the network.
+      if (message->channel != question_channel) received = Clock::now();
       take(std::move(*message));
-    } else if (!stop_ && !forever && Clock::now() >= received + silence_limit_) {
+    } else if (!stop_ && !forever && Clock::now() >= received + limit) {
       end_ = End::silence;
       return false;
     }
@@ -454,15 +459,22 @@ void LockstepClient::leave_at_next_tick(const std::string& reason, milliseconds 
 }
 
 void LockstepClient::request_leave(const std::string& reason, Clock::time_point deadline) {
-  if (outbox_.is_open()) {
-    outbox_.close();
-    send_ack();
-  }
+  if (outbox_.is_open()) outbox_.close();
   joined_ = false;
-  try {
-    request("leave", 0, text_of(sim::LeaveTerms{session_, sequence_, reason}), deadline, false);
-  } catch (const BusError&) {
-    // The world detects it when it waits for this client.
+  const auto start = Clock::now();
+  const std::int32_t id = ++request_id_;
+  answered_id_.reset();
+  const std::string text = text_of(sim::LeaveTerms{session_, sequence_, reason});
+  // Without back-off, and together with the last answer, which the world waits for and may be lost as well.  While the
+  // simulator requests messages, it is not ready to release this client.
+  while (Clock::now() < std::max(deadline, std::min(asked_ + time_to_leave, start + 10 * time_to_leave))) {
+    if (sequence_ > 0) send_ack();
+    send_request("leave", id, 0, text);
+    const auto resend = Clock::now() + first_resend_interval;
+    while (auto message = wait(resend, false)) {
+      take(std::move(*message));
+      if (answered_id_ == id) return;  // if it is refused, the world detects it when it waits for this client
+    }
   }
 }
 

@@ -125,7 +125,7 @@ class LockstepClient {
   std::optional<Received> wait(Clock::time_point deadline, bool heed_stop = true);
   /// Sends a request repeatedly until it is answered, and `is_complete` returns true.  Throws BusError.
   void request(
-      const std::string& command, double value, const std::string& text, Clock::time_point deadline, bool heed_stop,
+      const std::string& command, double value, const std::string& text, Clock::time_point deadline,
       const std::function<bool()>& is_complete = [] { return true; });
   /// Waits until a tick is open, or has arrived.  Returns false when none arrives in time, and when the session is
   /// over.
@@ -172,6 +172,7 @@ class LockstepClient {
   bool following_ = false;
   int requests_left_ = 0;  // for notification of the end of the followed run
   Clock::time_point ask_at_;
+  Clock::time_point asked_;  // when the simulator last requested messages of this client
   std::chrono::milliseconds request_interval_{0};
 
   std::optional<Incomplete> incomplete_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -89,6 +90,56 @@ class CdrWriter {
   }
 
   std::vector<std::byte>& out_;
+};
+
+/// Decoder of the same, of bytes that may be anything and must outlive this.  Throws shoal::MessageError where they
+/// end, or are not in this encoding.
+class CdrReader {
+ public:
+  explicit CdrReader(std::span<const std::byte> cdr) : cdr_(cdr) {
+    if (cdr.size() < at_ || cdr[0] != std::byte{0} || cdr[1] != std::byte{1})
+      throw shoal::MessageError("must begin with 00 01 (CDR, little-endian)");
+  }
+
+  template <class T>
+  T get() requires std::is_arithmetic_v<T> {
+    const std::size_t over = (at_ - CdrWriter::header_bytes) % sizeof(T);
+    const std::span<const std::byte> bytes = next(sizeof(T) + (over == 0 ? 0 : sizeof(T) - over)).last(sizeof(T));
+    if constexpr (std::is_same_v<T, bool>) return bytes[0] != std::byte{0};
+    T value{};
+    std::memcpy(&value, bytes.data(), sizeof value);
+    return value;
+  }
+  /// Returns a string without its final NUL.
+  std::string text() {
+    const std::span<const std::byte> bytes = next(get<std::uint32_t>());
+    if (!bytes.empty() && bytes.back() != std::byte{0}) throw shoal::MessageError("a string does not end with NUL");
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size() - (bytes.empty() ? 0 : 1)};
+  }
+  /// Returns the count of a sequence whose elements have at least this size.
+  std::size_t count(std::size_t element_bytes) {
+    const std::size_t count = get<std::uint32_t>();
+    if (count > (cdr_.size() - at_) / element_bytes) throw shoal::MessageError("a sequence is longer than the message");
+    return count;
+  }
+  /// Returns an array of fixed size, such as geometry_msgs/Vector3.
+  template <class T, std::size_t size>
+  std::array<T, size> array() {
+    std::array<T, size> values{};
+    for (T& value : values) value = get<T>();
+    return values;
+  }
+
+ private:
+  std::span<const std::byte> next(std::size_t bytes) {
+    if (bytes > cdr_.size() - at_) throw shoal::MessageError("ends too early");
+    const auto found = cdr_.subspan(at_, bytes);
+    at_ += bytes;
+    return found;
+  }
+
+  std::span<const std::byte> cdr_;
+  std::size_t at_ = CdrWriter::header_bytes;
 };
 
 }  // namespace bridges::ros2

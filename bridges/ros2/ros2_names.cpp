@@ -78,6 +78,15 @@ std::string type_name(std::string_view lcm_type) {
   return type.package + "/msg/" + type.name;
 }
 
+std::string dds_type_name(std::string_view ros_type) {
+  std::string name;
+  for (std::size_t slash = ros_type.find('/'); slash != std::string_view::npos; slash = ros_type.find('/')) {
+    name.append(ros_type.substr(0, slash)).append("::");
+    ros_type.remove_prefix(slash + 1);
+  }
+  return name.append("dds_::").append(ros_type).append("_");
+}
+
 std::vector<std::string> field_names(const shoal::MessageSchema& schema) {
   std::vector<std::string> names;
   std::set<std::string> used;

@@ -114,6 +114,9 @@ constexpr std::array standard_types{
     StandardType{"geometry_msgs/TwistWithCovariance", "geometry_msgs/Twist twist\nfloat64[36] covariance\n"},
     StandardType{"geometry_msgs/TwistWithCovarianceStamped",
                  "std_msgs/Header header\ngeometry_msgs/TwistWithCovariance twist\n"},
+    StandardType{"geometry_msgs/TwistStamped", "std_msgs/Header header\ngeometry_msgs/Twist twist\n"},
+    StandardType{"geometry_msgs/PoseStamped", "std_msgs/Header header\ngeometry_msgs/Pose pose\n"},
+    StandardType{"nav_msgs/Path", "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n"},
     StandardType{"nav_msgs/Odometry",
                  "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n"
                  "geometry_msgs/TwistWithCovariance twist\n"},
@@ -165,6 +168,7 @@ constexpr std::array standard_types{
                  "uint8 POWER_SUPPLY_STATUS_DISCHARGING=2\nuint8 power_supply_status\n"
                  "uint8 power_supply_health\nuint8 power_supply_technology\nbool present\n"
                  "float32[] cell_voltage\nfloat32[] cell_temperature\nstring location\nstring serial_number\n"},
+    StandardType{"std_msgs/Float64", "float64 data\n"},
     StandardType{"std_msgs/ColorRGBA", "float32 r\nfloat32 g\nfloat32 b\nfloat32 a\n"},
     StandardType{"builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n"},
     StandardType{"visualization_msgs/UVCoordinate", "float32 u\nfloat32 v\n"},

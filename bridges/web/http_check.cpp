@@ -143,6 +143,16 @@ std::optional<std::string_view> path_of(std::string_view target) {
   return plain ? std::optional(path) : std::nullopt;
 }
 
+bool has_token(std::string_view query, const std::function<bool(std::string_view)>& is_token) {
+  while (!query.empty()) {
+    const std::size_t end = std::min(query.find('&'), query.size());
+    const std::string_view part = query.substr(0, end);
+    if (part.starts_with("t=") && is_token(part.substr(2))) return true;
+    query.remove_prefix(std::min(end + 1, query.size()));
+  }
+  return false;
+}
+
 std::optional<std::uint64_t> asset_of(std::string_view path) {
   constexpr std::string_view folder = "/asset/";
   if (!path.starts_with(folder) || path.size() != folder.size() + 16) return std::nullopt;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -37,6 +38,8 @@ bool is_origin(std::string_view text);
 /// Returns the path of a request target, without its query; std::nullopt if it does not begin with `/` or has
 /// characters other than a-z, A-Z, 0-9 and `-._~/`.
 std::optional<std::string_view> path_of(std::string_view target);
+/// Returns true if the query of an address has a `t=TOKEN` that `is_token` accepts.
+bool has_token(std::string_view query, const std::function<bool(std::string_view)>& is_token);
 /// Returns the hash of a path `/asset/HASH`, with 16 lower-case hexadecimal digits; std::nullopt for another path.
 std::optional<std::uint64_t> asset_of(std::string_view path);
 /// Returns true if an `Accept-Encoding` header permits gzip.

@@ -125,11 +125,13 @@ std::variant<HttpAnswer, ChosenProtocol> HttpSite::choose(const HttpRequest& req
   const auto offered = header_list(request.subprotocols);
   std::string known;
   for (const ChosenProtocol& each : protocols_) {
-    if (std::find(offered.begin(), offered.end(), each.name) != offered.end()) {
+    const bool chosen =
+        each.name.empty() ? offered.empty() : std::find(offered.begin(), offered.end(), each.name) != offered.end();
+    if (chosen) {
       if (each.protocol->admits(query_of(request.target))) return each;
       return plain_answer(403, "the token of the page is needed: ws://HOST:PORT/?t=TOKEN\n");
     }
-    known += (known.empty() ? "" : ", ") + each.name;
+    known += (known.empty() ? "" : ", ") + (each.name.empty() ? "none" : each.name);
   }
   return plain_answer(400, "subprotocol '" + shown(request.subprotocols) + "': must be one of: " + known + "\n");
 }

@@ -160,7 +160,7 @@ void WebSocketPeer::set_options() {
   socket_.auto_fragment(false);
   const std::string name = chosen_.name;
   socket_.set_option(websocket::stream_base::decorator([name](websocket::response_type& response) {
-    response.set(http::field::sec_websocket_protocol, name);
+    if (!name.empty()) response.set(http::field::sec_websocket_protocol, name);
     response.set(http::field::server, "shoal");
   }));
 }

@@ -80,8 +80,8 @@ class WebServer final : public PageOutput {
   /// wait for a page at most: a further one replaces the oldest.
   void send_state_to(int client, std::span<const std::byte> state);
 
-  /// Adds a WebSocket subprotocol.  If a client offers several, the one added first is used; `shoal.view.v1` is before
-  /// all.
+  /// Adds a WebSocket subprotocol; an empty name is for clients that offer none.  If a client offers several, the one
+  /// added first is used; `shoal.view.v1` is before all.
   void add_protocol(std::string name, std::shared_ptr<WebProtocol> protocol);
   /// Runs a function in the thread of the server, in which all sessions of subprotocols live.
   void run_in_thread(std::function<void()> work);

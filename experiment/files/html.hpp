@@ -11,8 +11,6 @@ namespace experiment {
 /// invalid UTF-8 become U+FFFD.
 std::string html_text(std::string_view text);
 
-std::string base64(std::string_view bytes);
-
 /// Returns a table of plain texts; columns after the first are right-aligned.
 std::string html_table(const std::vector<std::string>& head, const std::vector<std::vector<std::string>>& rows);
 

@@ -10,6 +10,7 @@ namespace experiment {
 namespace {
 
 constexpr HelperProgram helpers[] = {
+    {"ip", "iproute2", "the commands that correct the network"},
     {"gnuplot", "gnuplot-nox", "plots of --results and shoal report"},
     {"ffmpeg", "ffmpeg", "films as .mp4 and .webm"},
     {"python3", "python3", "programs in Python"},

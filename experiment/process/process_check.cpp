@@ -46,7 +46,7 @@ class Program {
   }
 
   const sim::ProcessConfig& config() const { return config_; }
-  std::string who() const { return "process '" + config_.name + "'"; }
+  std::string who() const { return (written_.is_bridge ? "bridge '" : "process '") + config_.name + "'"; }
   /// Returns whether the program comes with Shoal, so that the meaning of its arguments is known.
   bool is_shipped() const { return declaration_ && written_.program.starts_with("shoal-"); }
   const sim::SourcePlace& place(const char* argument) const {

@@ -40,6 +40,12 @@ WrittenProcess written_process(const sim::LoadedWorld& loaded, std::size_t index
   static const sim::ConfigNode nothing;
   WrittenProcess written;
   const sim::ConfigNode* list = loaded.resolved.find("processes");
+  const std::size_t processes = list != nullptr ? list->items.size() : 0;
+  if (index >= processes) {
+    written.is_bridge = true;
+    index -= processes;
+    list = loaded.resolved.find("bridges");
+  }
   if (list == nullptr || index >= list->items.size()) return written;
   const sim::ConfigNode& item = list->items[index];
   // The resolved tree has the places in files, which the configuration does not keep.
@@ -55,6 +61,14 @@ WrittenProcess written_process(const sim::LoadedWorld& loaded, std::size_t index
   return written;
 }
 
+std::vector<std::string> free_bridges(const sim::LoadedWorld& loaded) {
+  std::vector<std::string> names;
+  const std::vector<sim::ProcessConfig>& all = loaded.config.processes;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (all[i].client.empty() && written_process(loaded, i).is_bridge) names.push_back(all[i].name);
+  return names;
+}
+
 void read_programs(sim::LoadedWorld& loaded, const ProgramLookup& lookup) {
   const std::vector<std::string> folders = folders_of(lookup);
   sim::Diagnostics diagnostics;
@@ -62,8 +76,8 @@ void read_programs(sim::LoadedWorld& loaded, const ProgramLookup& lookup) {
     sim::ProcessConfig& process = loaded.config.processes[i];
     const WrittenProcess written = written_process(loaded, i);
     if (written.program.empty()) continue;
-    const std::string who =
-        "process '" + process.name + "': program '" + sim::shortened(sim::printable(written.program)) + "'";
+    const std::string who = (written.is_bridge ? "bridge '" : "process '") + process.name + "': program '" +
+                            sim::shortened(sim::printable(written.program)) + "'";
     const sim::FoundProgram found =
         sim::find_program(written.program, folders, loaded.config.files.get(), written.place, who, diagnostics);
     if (!found.exists && lookup.all_needed)

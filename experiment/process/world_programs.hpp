@@ -21,12 +21,17 @@ struct ProgramLookup {
 /// commands. Reads only declarations, and never starts a program.  Throws sim::ConfigError with all errors.
 void read_programs(sim::LoadedWorld& loaded, const ProgramLookup& lookup);
 
-/// Process as written in the world file.
+/// Process or bridge as written in the world file.
 struct WrittenProcess {
+  bool is_bridge = false;
   sim::SourcePlace place;                 ///< where its program is named
   std::string program;                    ///< empty: it has a `command`
   const sim::ConfigNode* args = nullptr;  ///< never null for a `program`; lives as long as the world
 };
+/// Returns entry `index` of the world's processes, which end with its bridges.
 WrittenProcess written_process(const sim::LoadedWorld& loaded, std::size_t index);
+
+/// Returns the names of the bridges that run freely, so that a run with them is not repeatable.
+std::vector<std::string> free_bridges(const sim::LoadedWorld& loaded);
 
 }  // namespace experiment

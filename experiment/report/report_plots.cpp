@@ -5,6 +5,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "bridges/base/base64.hpp"
 #include "experiment/files/html.hpp"
 #include "experiment/report/report_page.hpp"
 #include "experiment/results/run_plots.hpp"
@@ -67,8 +68,8 @@ std::string plots_html(const std::string& directory, const std::vector<std::stri
     }
     const auto caption = captions.find(file);
     const std::string text = html_text(caption == captions.end() ? file : caption->second);
-    html += "<figure><img alt=\"" + text + "\" src=\"data:image/png;base64," + base64(bytes) + "\"><figcaption>" +
-            text + "</figcaption></figure>\n";
+    html += "<figure><img alt=\"" + text + "\" src=\"data:image/png;base64," + bridges::base64(bytes) +
+            "\"><figcaption>" + text + "</figcaption></figure>\n";
   }
   return html;
 }

@@ -194,6 +194,7 @@ std::string Summary::to_json() const {
     if (!client.ended.empty()) json["clients"].back()["ended_s"] = client.ended_s;
   }
   if (!not_recorded.empty()) json["not_recorded"] = not_recorded;
+  if (!not_repeatable.empty()) json["not_repeatable"] = not_repeatable;
   if (!warnings.empty()) json["warnings"] = warnings;
   // Control, zones and modems.
   json["control"] = {{"needs_key", needs_key}, {"refused_requests", refused_requests}, {"audit_count", audit_count}};
@@ -272,6 +273,7 @@ std::string Summary::to_text() const {
   for (const Process& process : processes)
     text += fmt::format("  process '{}' {} at {:.2f} s\n", process.name, process.how, process.sim_time_s);
   if (!not_recorded.empty()) text += "  not in the record: " + listed(not_recorded) + "\n";
+  if (!not_repeatable.empty()) text += "  not repeatable: " + listed(not_repeatable) + "\n";
   for (const bridges::AuditEntry& audit_entry : audit) text += "  " + audit_text(audit_entry) + "\n";
   if (refused_requests > 0)
     text += fmt::format("  {} requests without the key of the run were rejected\n", refused_requests);

@@ -59,6 +59,7 @@ struct Summary {
   std::vector<FirstContacts::Contact> contacts;   ///< of vehicles with each other and with objects
   std::vector<bridges::LockstepSummary> clients;  ///< that took part in the lockstep, by name
   std::vector<std::string> not_recorded;          ///< what clients published and the record lacks
+  std::vector<std::string> not_repeatable;        ///< what acted on the run at times of its own: `bridge moos`
   std::vector<std::string> warnings;              ///< of the end of the run, one line each
   bool needs_key = false;                         ///< control of the run needed its key
   std::int64_t refused_requests = 0;              ///< for lack of the key

@@ -18,14 +18,21 @@
 
 namespace experiment {
 
+std::string cannot_write_text(const std::string& path, int error_number) {
+  const bool full = error_number == ENOSPC || error_number == EDQUOT;
+  const bool closed = error_number == EROFS || error_number == EACCES || error_number == EPERM;
+  return "cannot write results to '" + path + "': " + std::strerror(error_number) +
+         (full ? "; free some space, or choose another folder with --results" : "") +
+         (closed ? "; choose another folder with --results" : "");
+}
+
 ResultsLock::ResultsLock(const std::string& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   // The folder itself is locked, so no lock file can be left behind.
   folder_ = bridges::FileDescriptor(open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (error || folder_.number() < 0)
-    throw RunError(4, "bus",
-                   "cannot write results to '" + directory + "': " + (error ? error.message() : std::strerror(errno)));
+    throw RunError(4, "bus", cannot_write_text(directory, error ? error.value() : errno));
   if (const auto owner = bridges::lock_against_others(folder_.number()))
     throw RunError(4, "bus",
                    "cannot write results to '" + directory + "': " + *owner +
@@ -48,9 +55,10 @@ std::vector<std::string> programs_in(const std::string& world_file) {
   try {
     sim::Diagnostics problems;
     const sim::ConfigNode world = sim::parse_config_text(read_whole_file(world_file), world_file, problems);
-    if (const sim::ConfigNode* processes = world.find("processes"))
-      for (const sim::ConfigNode& process : processes->items)
-        if (const std::string* name = sim::name_of(process)) names.push_back(*name);
+    for (const char* key : {"processes", "bridges"})
+      if (const sim::ConfigNode* programs = world.find(key))
+        for (const sim::ConfigNode& program : programs->items)
+          if (const std::string* name = sim::name_of(program)) names.push_back(*name);
   } catch (const std::exception&) {  // there is none, or it cannot be read
   }
   return names;

@@ -8,6 +8,10 @@
 
 namespace experiment {
 
+/// Returns one line: that results cannot be written there, the reason by `error_number` (of errno), and for a full disk
+/// or a folder that cannot be written what to do.
+std::string cannot_write_text(const std::string& path, int error_number);
+
 /// Lock of a results folder against other runs while this one writes there.  It is released when the process ends.
 class ResultsLock {
  public:

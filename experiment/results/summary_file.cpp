@@ -12,11 +12,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "experiment/results/results_folder.hpp"
+
 namespace experiment {
 namespace {
 
 std::runtime_error cannot_write(const std::string& path, int error_number) {
-  return std::runtime_error("cannot write results to '" + path + "': " + std::strerror(error_number));
+  return std::runtime_error(cannot_write_text(path, error_number));
 }
 
 void write_all(int file, const std::string& text, const std::string& path) {

@@ -28,6 +28,8 @@ struct ViewOptions {
   std::string token = {};            ///< what a page needs to steer; empty: 128 random bits
   std::string page_directory;        ///< folder with the page; empty: the page in the program
   bool foxglove_control = false;     ///< clients of Foxglove may control the run or the playback
+  bool rosbridge = false;            ///< clients of rosbridge v2 connect without a subprotocol
+  bool rosbridge_control = false;    ///< they may command vehicles and control the run
   std::string drive_profile;         ///< file of the profile by which pages drive; empty: that of the program
   std::function<void(const std::string& url)> opened = {};  ///< receives the address of the page of a run
 };

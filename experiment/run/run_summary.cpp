@@ -6,6 +6,7 @@
 #include "devices/common/serial_port.hpp"
 #include "devices/comms/message_modem.hpp"
 #include "experiment/process/process_check.hpp"
+#include "experiment/process/world_programs.hpp"
 #include "experiment/run/run.hpp"
 #include "experiment/run/version.hpp"
 #include "experiment/snapshot/run_identity.hpp"
@@ -110,6 +111,8 @@ void Run::add_figures(Summary& summary) {
   summary.metrics = scoring_.figures();
   summary.verdicts = scoring_.verdicts();
   summary.processes = programs_.ended();
+  if (options_.launch)
+    for (const std::string& bridge : free_bridges(loaded_)) summary.not_repeatable.push_back("bridge " + bridge);
   summary.clients = parts_.lockstep.summaries();
   summary.not_recorded = parts_.lockstep.not_recorded();
   if (const std::uint64_t count = parts_.buses.left_out_of_record(); count > 0)

@@ -109,11 +109,14 @@ std::string file_by_name(std::initializer_list<ShippedKind> kinds, const std::st
       !given.empty() && given.find('/') == std::string::npos && (!path.has_extension() || path.extension() == ending);
   if (fs::is_regular_file(given, error)) return given;
   if (!bare) return shipped_path(kinds, given).value_or(given);
-  if (fs::exists(given, error)) return given;  // a folder or a pipe, which its reader reports
+  // A folder may have the name of a world: that of its results.
+  const bool is_folder = fs::is_directory(given, error);
+  if (!is_folder && fs::exists(given, error)) return given;  // such as a pipe, which its reader reports
   if (fs::is_regular_file(given + ending, error)) return given + ending;
   for (const ShippedKind kind : kinds)
     for (const ShippedFile& file : named_files(kind))
       if (file.name == path.stem()) return file.path;
+  if (is_folder) return given;
   refuse_name(kinds, given);
 }
 

@@ -21,9 +21,9 @@ enum class ShippedKind { world, vehicle, study };
 std::vector<ShippedFile> shipped_files(ShippedKind kind);
 
 /// Resolves a file name of a command line: a file of the name `given`, else NAME.yaml in the current folder, else the
-/// shipped file of this name, which may also be given as `NAME.yaml` or `worlds/NAME.yaml`.  Another path is returned
-/// unchanged, even when no such file exists.  Throws sim::ConfigError when a bare name matches nothing.  Of several
-/// kinds the first one with this name is used.
+/// shipped file of this name, which may also be given as `NAME.yaml` or `worlds/NAME.yaml`; a folder `given` does not
+/// hide it.  Another path is returned unchanged, even when no such file exists.  Throws sim::ConfigError when a bare
+/// name matches nothing.  Of several kinds the first one with this name is used.
 std::string file_by_name(std::initializer_list<ShippedKind> kinds, const std::string& given);
 inline std::string world_file(const std::string& given) {
   return file_by_name({ShippedKind::world}, given);

@@ -33,7 +33,7 @@ struct AsBefore {
   std::vector<std::string> members;
 };
 
-bool nan_means_as_before(const MessageSchema& schema, const Member& member) {
+const std::vector<AsBefore>& as_before_table() {
   // Zero in these members would be a command (drive to 0, dive to 0); YAML that leaves them out means 'as before'.
   static const std::vector<AsBefore> table{
       {"shoal.helm_command_t", {"speed_mps", "heading_rad", "depth_m", "altitude_m"}},
@@ -43,6 +43,11 @@ bool nan_means_as_before(const MessageSchema& schema, const Member& member) {
       {"shoal.joint_frames_t", {"position"}},
       {"shoal.pan_tilt_zoom_command_t", {"pan_rad", "tilt_rad", "fov_rad", "pan_radps", "tilt_radps", "fov_radps"}},
   };
+  return table;
+}
+
+bool nan_means_as_before(const MessageSchema& schema, const Member& member) {
+  const std::vector<AsBefore>& table = as_before_table();
   return std::any_of(table.begin(), table.end(), [&](const AsBefore& row) {
     return schema.name == row.type &&
            std::find(row.members.begin(), row.members.end(), member.name) != row.members.end();
@@ -227,6 +232,11 @@ class Writer {
 };
 
 }  // namespace
+
+bool has_unchanged(std::string_view type) {
+  const std::vector<AsBefore>& table = as_before_table();
+  return std::any_of(table.begin(), table.end(), [&](const AsBefore& row) { return row.type == type; });
+}
 
 std::vector<std::byte> encode_message(const MessageTypes& types, const std::string& type, const sim::ConfigNode& value,
                                       sim::Diagnostics& diagnostics) {

@@ -2,12 +2,16 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "shoal/message_schema.hpp"
 #include "sim/config/config_node.hpp"
 
 namespace shoal {
+
+/// Returns whether a type has members in which NaN means "unchanged".
+bool has_unchanged(std::string_view type);
 
 /// Encodes a map `{member: value}` as a message of the type `type`, such as `shoal.pose_t`.  Missing members are 0,
 /// empty or false, or NaN where NaN means "unchanged" (shoal.helm_command_t, station_command_t, waypoints_command_t),

@@ -47,7 +47,7 @@ void check_complete(ConfigNode world, const std::string& who) {
     throw sim::ConfigError({who + " " + what + ": a world in a take has no other files and no programs"});
   };
   if (world.kind != ConfigNode::Kind::map) throw sim::ConfigError({who + " must be a map, the keys of a world file"});
-  for (const char* key : {"include", "plugins", "processes"})
+  for (const char* key : {"include", "plugins", "processes", "bridges"})
     if (world.find(key) != nullptr) refuse("has the key '" + std::string(key) + "'");
   if (const ConfigNode* vehicles = world.find("vehicles"))
     for (const ConfigNode& vehicle : vehicles->items)
@@ -67,7 +67,8 @@ void check_complete(ConfigNode world, const std::string& who) {
 
 ConfigNode embeddable_world(const ConfigNode& resolved, const std::string& name) {
   ConfigNode world = resolved;
-  std::erase_if(world.entries, [](const ConfigNode::Entry& entry) { return entry.key == "processes"; });
+  std::erase_if(world.entries,
+                [](const ConfigNode::Entry& entry) { return entry.key == "processes" || entry.key == "bridges"; });
   if (world.find("name") == nullptr) world.entries.push_back({"name", {}, sim::scalar_node(name, {})});
   insert_motions(world);
   check_complete(world, "--embed: world '" + name + "'");

@@ -98,26 +98,51 @@ WorldConfig& WorldConfig::operator=(const WorldConfig&) = default;
 WorldConfig& WorldConfig::operator=(WorldConfig&&) noexcept = default;
 WorldConfig::~WorldConfig() = default;
 
-void ProcessConfig::read(ParamReader& in) {
-  in.require("name");
-  in.read_name("name", name, "name of the process in messages");
-  // The launcher makes the command line from these, by the declaration of the program.
+namespace {
+
+/// Checks the text of `program`; the launcher makes the command line from it, by its declaration.
+void read_program(ParamReader& in, const char* meaning) {
   std::string program;
   ConfigNode args;
-  in.read("program", program, "a program with a declaration of its arguments, see docs/guides/program_arguments.md");
+  in.read("program", program, meaning);
   in.read_raw("args", args, "arguments of 'program' by name; in texts {lcm_url} and {run} are replaced");
-  read_command(in, command);
-  in.read("client", client, "client name with which it joins the lockstep; the run then waits for it");
-  in.read_reference("bus", bus, "bus", "its LCM URL is that of this bus, named in `buses`; unset: the world's");
-  in.read_choice(
-      "on_exit", on_exit, {{"continue", OnExit::go_on}, {"end", OnExit::end_run}, {"ignore", OnExit::ignore}},
-      "when it ends before the run; continue: the run continues, and fails if the program failed; end: the run ends "
-      "with exit code 1; ignore: the run continues, and a failure does not count");
-  if (in.describing()) return;
   if (in.has("program") && program.empty()) in.error("program", "'program' must not be empty");
   if (program.find(' ') != std::string::npos)
     in.error("program", "'program' must be the name or path of a program alone, got '" + shortened(printable(program)) +
                             "'; its arguments go below 'args'");
+}
+
+/// Reads how a program takes part in the run.
+void read_part(ParamReader& in, ProcessConfig& process, const char* client_meaning) {
+  in.read("client", process.client, client_meaning);
+  in.read_reference("bus", process.bus, "bus", "its LCM URL is that of this bus, named in `buses`; unset: the world's");
+  in.read_choice(
+      "on_exit", process.on_exit, {{"continue", OnExit::go_on}, {"end", OnExit::end_run}, {"ignore", OnExit::ignore}},
+      "when it ends before the run; continue: the run continues, and fails if the program failed; end: the run ends "
+      "with exit code 1; ignore: the run continues, and a failure does not count");
+}
+
+/// Bridge to another system: a program of the world as any other, from the list `bridges`.
+struct BridgeConfig : ProcessConfig {
+  void read(ParamReader& in) {
+    in.require("name");
+    in.read_name("name", name, "name of the bridge in messages");
+    in.require("program");
+    read_program(in, "program of the bridge, such as shoal-moos, with a declaration of its arguments");
+    read_part(in, *this,
+              "client name with which it joins the lockstep; unset: it runs freely, and the run is not repeatable");
+  }
+};
+
+}  // namespace
+
+void ProcessConfig::read(ParamReader& in) {
+  in.require("name");
+  in.read_name("name", name, "name of the process in messages");
+  read_program(in, "a program with a declaration of its arguments, see docs/guides/program_arguments.md");
+  read_command(in, command);
+  read_part(in, *this, "client name with which it joins the lockstep; the run then waits for it");
+  if (in.describing()) return;
   if (in.has("program") == in.has("command"))
     in.error(in.has("program") ? "needs either 'program' or 'command', not both"
                                : "needs either 'program' with 'args' or 'command'");
@@ -262,6 +287,15 @@ void WorldConfig::read(ParamReader& in) {
   read_script(in, *this);
   in.read_list("processes", processes, "process", "external programs, started only with --launch");
   for (const ProcessConfig& process : processes) in.declare("process", process.name);
+  std::vector<BridgeConfig> bridges;
+  in.read_list("bridges", bridges, "bridge",
+               "programs that connect the run to other systems, started only with --launch");
+  for (const BridgeConfig& bridge : bridges) {
+    in.declare("bridge", bridge.name);
+    for (const ProcessConfig& process : processes)
+      if (process.name == bridge.name) in.error("bridges", "bridge '" + bridge.name + "' has the name of a process");
+  }
+  processes.insert(processes.end(), bridges.begin(), bridges.end());  // in this order: written_process() counts on it
   in.read("lockstep", lockstep, "waiting for clients");
   in.read("limits", limits, "limits of additions during the run");
   // Metrics and pass rules.

@@ -19,9 +19,9 @@ using testing::HasSubstr;
 using testing::Not;
 using Words = std::vector<std::string>;
 
-const Words programs = {"shoal-coop-rover", "shoal-coop-auv",   "shoal-coop-craft", "shoal-coop-station",
-                        "shoal-balance",    "shoal-ball-chase", "shoal-ball-dog",   "shoal-mapper",
-                        "shoal-patrol",     "shoal-ranger",     "shoal-nav",        "shoal-nmea"};
+const Words programs = {"shoal-coop-rover", "shoal-coop-auv", "shoal-coop-craft", "shoal-coop-station", "shoal-balance",
+                        "shoal-ball-chase", "shoal-ball-dog", "shoal-mapper",     "shoal-patrol",       "shoal-ranger",
+                        "shoal-nav",        "shoal-nmea",     "shoal-moos",       "shoal-frontseat"};
 
 Ended run_program(const std::string& program, Words arguments, const Words& environment = {}) {
   arguments.insert(arguments.begin(), built(program));

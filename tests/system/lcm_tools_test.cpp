@@ -153,6 +153,29 @@ TEST(LcmTools, DoctorSaysThatLcmIsUsableHere) {
   EXPECT_EQ(ended.exit_code, 0) << ended.output << ended.errors;
 }
 
+TEST(LcmTools, DoctorSaysThatTheFolderCannotBeWritten) {
+  Program doctor({"env", "-C", "/proc", built("shoal"), "doctor", "--lcm-url", own_url()});
+  EXPECT_EQ(doctor.wait(), 0) << doctor.output();
+  EXPECT_THAT(doctor.output(),
+              testing::ContainsRegex("warning folder: /proc cannot be written: .*; choose another folder"));
+}
+
+TEST(LcmTools, DoctorSaysThatTheDiskIsFull) {
+  const ScratchFolder folder;
+  const std::string disk = folder.file("disk");
+  std::filesystem::create_directory(disk);
+  const std::vector<std::string> enter = {
+      "unshare", "-rm", "sh", "-c", "mount -t tmpfs -o size=64k tmpfs \"$0\" && cd \"$0\" && exec \"$@\"", disk};
+  const auto inside = [&enter](std::vector<std::string> command) {
+    command.insert(command.begin(), enter.begin(), enter.end());
+    return command;
+  };
+  if (Program(inside({"true"})).wait() != 0) GTEST_SKIP() << "unshare -rm is not permitted here";
+  Program doctor(inside({built("shoal"), "doctor", "--lcm-url", own_url()}));
+  EXPECT_EQ(doctor.wait(), 0) << doctor.output();
+  EXPECT_THAT(doctor.output(), testing::HasSubstr(disk + " has 0.0 GB free; free some space, or choose another"));
+}
+
 TEST(LcmTools, TheViewersScriptSaysWhatIsMissing) {
   Program without_jars({"env", "SHOAL_JAVA_FOLDER=/nowhere", source("tools/lcm-spy")});
   EXPECT_EQ(without_jars.wait(), 4);

@@ -12,6 +12,7 @@ import os
 import re
 import shlex
 import sys
+import tarfile
 import unittest
 
 from checkout_copy import CheckoutCopy, in_own_network  # it adds the folder of own_ports
@@ -83,6 +84,16 @@ class Readme(unittest.TestCase):
         self.terminal = Terminal(self.copy.checkout, self.copy.environment)
         self.addCleanup(self.terminal.close)
 
+    def add_tarball(self):
+        """Adds the tarball of this version, as tools/package names it; its program is a link to that of the build."""
+        with open(os.path.join(SOURCE, "CMakeLists.txt"), encoding="utf-8") as file:
+            version = re.search(r"project\(shoal VERSION ([0-9.]+)", file.read())[1]
+        folder = f"shoal-{version}-linux-x86_64"
+        with tarfile.open(os.path.join(self.copy.checkout, folder + ".tar.xz"), "w:xz") as tar:
+            program = tarfile.TarInfo(folder + "/bin/shoal")
+            program.type, program.linkname = tarfile.SYMTYPE, os.path.join(BINARY_DIR, "bin/shoal")
+            tar.addfile(program)
+
     def run_page(self, name):
         with open(os.path.join(SOURCE, name), encoding="utf-8") as file:
             text = file.read()
@@ -92,6 +103,7 @@ class Readme(unittest.TestCase):
 
     def test_every_command_works_in_a_clone(self):
         self.make_clone()
+        self.add_tarball()
         self.run_page("README.md")
         with open(self.copy.ctest_calls, encoding="utf-8") as file:
             self.assertEqual(len(file.readlines()), 1, "tools/test")

@@ -13,8 +13,8 @@ import unittest
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 COMMANDS = ("awk basename bash cat chmod dirname env grep head mkdir mktemp python3 rm sed sort tail touch tr").split()
-PACKAGES = ("# A list.\n\n# [run]\n# build\nno-such-a\n# [test]\n# tests\nno-such-b\n# [ci]\n"
-            "# fuzzing (needs clang)\nno-such-c\nno-such-d\n# lint\nno-such-e\n# [release]\n# images\nno-such-f\n")
+PACKAGES = ("# A list.\n\n# [run]\n# build\nno-such-a\n# [test]\n# tests\nno-such-b\n# [release]\n"
+            "# packages\nno-such-c\n# [ci]\n# fuzzing (needs clang)\nno-such-d\nno-such-e\n# lint\nno-such-f\n")
 DEBIAN = 'PRETTY_NAME="Debian GNU/Linux {0}"\nID=debian\nVERSION_ID="{0}"\n'
 # apt-get install notes its packages, which dpkg-query then finds.
 STUBS = {
@@ -115,12 +115,12 @@ class Setup(Scratch):
     def test_each_section_includes_those_before_it(self):
         self.assertEqual(self.run_script("tools/setup", "--for", "run", "--list"), ["no-such-a"])
         self.assertEqual(self.run_script("tools/setup", "--list"), ["no-such-a", "no-such-b"])
-        self.assertEqual(self.run_script("tools/setup", "--for", "ci", "--list"), [f"no-such-{c}" for c in "abcde"])
-        self.assertEqual(self.run_script("tools/setup", "--for", "release", "--list"), [f"no-such-{c}" for c in "abcdef"])
+        self.assertEqual(self.run_script("tools/setup", "--for", "release", "--list"), [f"no-such-{c}" for c in "abc"])
+        self.assertEqual(self.run_script("tools/setup", "--for", "ci", "--list"), [f"no-such-{c}" for c in "abcdef"])
 
     def test_what_is_left_out_is_named_in_one_line(self):
         self.assertEqual(self.run_script("tools/setup", "--for", "test", "--left-out"),
-                         ["left out: fuzzing, lint (tools/setup --for ci)"])
+                         ["left out: packages, fuzzing, lint (tools/setup --for ci)"])
 
     def test_what_is_missing_is_installed_once(self):
         self.install("no-such-b")
@@ -130,8 +130,8 @@ class Setup(Scratch):
 
     def test_wrong_words_are_named(self):
         self.assertEqual(self.run_script("tools/setup", "--for", "x", code=2),
-                         ["tools/setup: --for must be run, test, ci or release, got 'x'"])
-        self.assertEqual(self.run_script("tools/setup", "--for", code=2), ["tools/setup: --for needs run, test, ci or release"])
+                         ["tools/setup: --for must be run, test, release or ci, got 'x'"])
+        self.assertEqual(self.run_script("tools/setup", "--for", code=2), ["tools/setup: --for needs run, test, release or ci"])
 
     def test_another_system_than_debian(self):
         os.remove(self.path("bin", "dpkg-query"))

@@ -38,20 +38,6 @@ class StopBySignal {
   StopBySignal& operator=(const StopBySignal&) = delete;
 };
 
-/// Returns the exit code of a program whose run is over.
-int exit_code_of(const shoal::Client& client) {
-  if (signal_caught != 0) return 128 + signal_caught;
-  switch (client.end()) {
-    case shoal::Client::End::silence:
-      return exit_timeout;
-    case shoal::Client::End::dropped:
-      std::cerr << client.reason() << '\n';
-      return exit_timeout;
-    default:
-      return exit_ok;
-  }
-}
-
 }  // namespace
 
 void set_help_end(command_line::DeclaredOptions& options, const std::vector<std::string>& examples,
@@ -94,7 +80,10 @@ int take_part(shoal::Client& client, const Participation& participation, Memory 
     lost = true;
     client.stop();
   });
-  client.join(participation.period_s, std::chrono::milliseconds(std::llround(1000 * participation.join_timeout_s)));
+  if (participation.in_lockstep)
+    client.join(participation.period_s, std::chrono::milliseconds(std::llround(1000 * participation.join_timeout_s)));
+  else
+    client.follow(participation.period_s);
   while (const auto utime = client.next_tick()) {
     if (lost) break;
     decide(*utime);
@@ -105,15 +94,16 @@ int take_part(shoal::Client& client, const Participation& participation, Memory 
               << " s (--rewind-s); it ends\n";
     return exit_rewound;
   }
-  return exit_code_of(client);
-}
-
-int follow(shoal::Client& client, const Participation& participation,
-           const std::function<void(std::int64_t utime)>& decide) {
-  const StopBySignal stop(client);
-  client.follow(participation.period_s);
-  while (const auto utime = client.next_tick()) decide(*utime);
-  return exit_code_of(client);
+  if (signal_caught != 0) return 128 + signal_caught;
+  switch (client.end()) {
+    case shoal::Client::End::silence:
+      return exit_timeout;
+    case shoal::Client::End::dropped:
+      std::cerr << client.reason() << '\n';
+      return exit_timeout;
+    default:
+      return exit_ok;
+  }
 }
 
 int run_program(const char* name, const std::function<int()>& program) {

@@ -31,13 +31,14 @@ struct Participation {
   std::string lcm_url;
   double period_s = 0.1;
   double join_timeout_s = 30;
-  double rewind_s = 60;  ///< longest rewind, in simulated time; 0: none
+  bool in_lockstep = true;  ///< false: the run does not wait for the program, whose ticks are those of sim.clock
+  double rewind_s = 60;     ///< longest rewind, in simulated time; 0: none
 
   void declare(command_line::DeclaredOptions& options);
 };
 
-/// Joins the run and calls `decide` at each tick, until the run ends or a signal arrives.  After a rewind of the world,
-/// `memory` restores the program's state.  Returns the exit code.
+/// Joins or follows the run and calls `decide` at each tick, until the run ends or a signal arrives.  After a rewind of
+/// the world, `memory` restores the program's state.  Returns the exit code.
 int take_part(shoal::Client& client, const Participation& participation, Memory memory,
               const std::function<void(std::int64_t utime)>& decide);
 
@@ -47,11 +48,6 @@ int take_part(shoal::Client& client, const Participation& participation, State& 
               const std::function<void(std::int64_t utime)>& decide) {
   return take_part(client, participation, Memory(state, participation.rewind_s), decide);
 }
-
-/// Follows the run without lockstep and calls `decide` each period of simulated time, until the run ends or a signal
-/// arrives.  Returns the exit code.
-int follow(shoal::Client& client, const Participation& participation,
-           const std::function<void(std::int64_t utime)>& decide);
 
 /// Runs a program: reports std::invalid_argument and sim::ConfigError as wrong usage, any other exception as a
 /// bus error.

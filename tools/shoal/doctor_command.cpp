@@ -1,11 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fcntl.h>
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
 #include <memory>
 
 #include "bridges/base/child_program.hpp"
+#include "bridges/base/file_descriptor.hpp"
 #include "bridges/bus/network_check.hpp"
 #include "experiment/process/helper_programs.hpp"
 #include "tools/shoal/commands/commands.hpp"
@@ -25,6 +34,26 @@ const char* word(bridges::Finding::Verdict verdict) {
   }
 }
 
+constexpr std::uintmax_t least_free_bytes = 1'000'000'000;  // a record of an hour, plots and a film
+
+/// Checks whether results can be written to the current folder: makes a file there, and removes it.
+bridges::Finding check_folder() {
+  using Verdict = bridges::Finding::Verdict;
+  std::string probe = ".shoal-doctor-XXXXXX";
+  const bridges::FileDescriptor file(mkostemp(probe.data(), O_CLOEXEC));
+  const int reason = errno;
+  std::error_code error;
+  const std::string here = std::filesystem::current_path(error).string();
+  const std::string elsewhere = "choose another folder with --results";
+  if (file.number() < 0)
+    return {"folder", Verdict::warning, here + " cannot be written: " + std::strerror(reason) + "; " + elsewhere, {}};
+  std::filesystem::remove(probe, error);
+  const std::uintmax_t free_bytes = std::filesystem::space(".", error).available;
+  const std::string text = fmt::format("{} has {:.1f} GB free", here, static_cast<double>(free_bytes) * 1e-9);
+  if (error || free_bytes >= least_free_bytes) return {"folder", Verdict::ok, text, {}};
+  return {"folder", Verdict::warning, text + "; free some space, or " + elsewhere, {}};
+}
+
 /// Prints which programs of others are missing, and how to install them.
 void report_helpers() {
   const std::vector<experiment::HelperProgram> missing = experiment::missing_helpers(bridges::is_program);
@@ -37,10 +66,11 @@ void report_helpers() {
             << experiment::install_command(missing, release) << '\n';
 }
 
-int examine(const std::string& url) {
+/// Prints findings and their remedies; returns whether none is bad.
+bool report(const std::vector<bridges::Finding>& findings) {
   bool usable = true;
   std::vector<std::string> commands;
-  for (const bridges::Finding& finding : bridges::check_network(url)) {
+  for (const bridges::Finding& finding : findings) {
     std::cout << word(finding.verdict) << finding.name << ": " << finding.text << '\n';
     usable = usable && finding.verdict != bridges::Finding::Verdict::bad;
     // Several findings may have the same remedy.
@@ -49,6 +79,14 @@ int examine(const std::string& url) {
   }
   if (!commands.empty()) std::cout << "\nTo fix it, run as root:\n";
   for (const std::string& command : commands) std::cout << "  " << command << '\n';
+  return usable;
+}
+
+int examine(const std::string& url, const std::string& peer) {
+  if (!peer.empty()) return report(bridges::check_peer(peer, url)) ? exit_ok : exit_bus;
+  std::vector<bridges::Finding> findings = bridges::check_network(url);
+  findings.push_back(check_folder());
+  const bool usable = report(findings);
   report_helpers();
   std::cout << (usable ? "\nLCM is usable here.\n" : "\nLCM is not usable here.\n");
   return usable ? exit_ok : exit_bus;
@@ -58,14 +96,19 @@ int examine(const std::string& url) {
 
 static void add_doctor_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.get_subcommand("doctor");
-  const auto url = std::make_shared<std::string>();
+  const auto url = std::make_shared<std::string>(), peer = std::make_shared<std::string>();
   add_log_level_option(*command);
   add_lcm_url_option(*command, *url);
-  command_line::set_help_end(*command, {{"shoal doctor"}, {{0, "usable"}, {2, "wrong usage"}, {4, "not usable"}}, {}});
-  command->callback([url, &exit_code] { exit_code = examine(*url); });
+  command->add_option("--peer", *peer, "check what reaches another machine, on which the same runs, instead")
+      ->type_name("HOST");
+  command_line::set_help_end(*command, {{"shoal doctor", "shoal doctor --peer 192.168.1.7",
+                                         "shoal doctor --peer 192.168.1.7 --lcm-url udpm://239.255.76.67:7667?ttl=1"},
+                                        {{0, "usable"}, {2, "wrong usage"}, {4, "not usable"}},
+                                        {}});
+  command->callback([url, peer, &exit_code] { exit_code = examine(*url, *peer); });
 }
 
-SHOAL_COMMAND(connect, "doctor", "Check LCM and helper programs on this machine, and print how to fix them",
+SHOAL_COMMAND(connect, "doctor", "Check network, folder and helper programs of this machine, and print how to fix them",
               add_doctor_command);
 
 }  // namespace tools

@@ -109,6 +109,8 @@ int run(RunArguments& arguments) {
   const bool nowhere = arguments.run.snapshots.empty() && arguments.run.results.empty();
   if (nowhere && (!arguments.snapshot_at.empty() || arguments.run.snapshot_every_s))
     throw CLI::ValidationError("--snapshot-at", "needs --snapshots DIR or --results DIR");
+  // Clients of rosbridge connect to the port of the page.
+  arguments.with_page = arguments.with_page || arguments.view.rosbridge || arguments.view.rosbridge_control;
   experiment::Browser browser;
   if (arguments.open) arguments.view.opened = [&browser](const std::string& url) { browser.open(url); };
   if (arguments.with_page) {
@@ -233,6 +235,8 @@ static void add_run_command(CLI::App& app, int& exit_code) {
       ->needs("--view");
   add_open_option(*command, arguments->open)->needs("--view");
   add_page_options(*command, arguments->view);
+  command->add_flag("--rosbridge-control", arguments->view.rosbridge_control,
+                    "as --rosbridge; any local client may command vehicles, and pause, rewind and change the run");
   command
       ->add_option("--drive-profile", arguments->view.drive_profile,
                    "profile with which pages drive vehicles; see `shoal drive --print-profile`")
@@ -242,21 +246,22 @@ static void add_run_command(CLI::App& app, int& exit_code) {
   add_plugin_option(*command);
   // End of the help and action.
   command_line::set_help_end(
-      *command,
-      {{"shoal run worlds/minimal.yaml --duration 10 --speed 1",
-        "shoal run worlds/coop_land.yaml --launch --results results/coop_land --record coop.lcm",
-        "shoal run worlds/coop_underwater.yaml --launch --view", "shoal run my_world.yaml --bus none --view --watch",
-        "shoal run worlds/coop_land.yaml --duration 20 --snapshot-at 10 --snapshots snaps",
-        "shoal run --from snaps/branch0_step1000.snapshot --set vehicles.rover3.devices.lidar.rate_hz=5",
-        "shoal run worlds/coop_land.yaml --seed 7 --set vehicles.rover3.devices.modem.loss_probability=0.2"},
-       {{0, "the run ended; no rule of the world failed"},
-        {1, "a rule of the world or one of its programs failed"},
-        {2, "wrong usage, or a mistake in the world"},
-        {3, "physics fault"},
-        {4, "bus or file error"},
-        {5, "a lockstep client did not join or answer in time, or a step took longer than 'limits' allows"},
-        {129, "ended by SIGHUP; 130 by SIGINT; 143 by SIGTERM"}},
-       {}});
+      *command, {{"shoal run worlds/minimal.yaml --duration 10 --speed 1",
+                  "shoal run worlds/coop_land.yaml --launch --results results/coop_land --record coop.lcm",
+                  "shoal run worlds/coop_underwater.yaml --launch --view",
+                  "shoal run worlds/minimal.yaml --rosbridge-control --view-port 9090",
+                  "shoal run my_world.yaml --bus none --view --watch",
+                  "shoal run worlds/coop_land.yaml --duration 20 --snapshot-at 10 --snapshots snaps",
+                  "shoal run --from snaps/branch0_step1000.snapshot --set vehicles.rover3.devices.lidar.rate_hz=5",
+                  "shoal run worlds/coop_land.yaml --seed 7 --set vehicles.rover3.devices.modem.loss_probability=0.2"},
+                 {{0, "the run ended; no rule of the world failed"},
+                  {1, "a rule of the world or one of its programs failed"},
+                  {2, "wrong usage, or a mistake in the world"},
+                  {3, "physics fault"},
+                  {4, "bus or file error"},
+                  {5, "a lockstep client did not join or answer in time, or a step took longer than 'limits' allows"},
+                  {129, "ended by SIGHUP; 130 by SIGINT; 143 by SIGTERM"}},
+                 {}});
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "bridges/base/base64.hpp"
 #include "bridges/base/json_text.hpp"
-#include "experiment/files/html.hpp"
 
 namespace viewer {
 
@@ -64,7 +64,7 @@ std::string modules_of(std::span<const bridges::EmbeddedFile> page) {
 }
 
 std::string data_element(std::string_view id, std::string_view packed) {
-  return "<script type=\"text/plain\" id=\"" + std::string(id) + "\">" + experiment::base64(packed) + "</script>\n";
+  return "<script type=\"text/plain\" id=\"" + std::string(id) + "\">" + bridges::base64(packed) + "</script>\n";
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ void BusView::message(std::string_view channel, std::span<const std::byte> paylo
     newest_utime_ = utime;
   }
   newest_utime_ = std::max(newest_utime_, utime);
-  session_.foxglove.message(utime, channel, payload);
+  session_.pass_on(utime, channel, payload);
   if (channel != "sim.info") return;
   try {
     const auto info = shoal::decode<shoal::sim_info_t>(payload, shoal::Finite::any);
@@ -55,6 +55,7 @@ void BusView::flush() {
   session_.messages.flush();
   session_.flush_traffic(now_us_);
   session_.foxglove.show_time(newest_utime_);
+  if (session_.rosbridge) session_.rosbridge->release();
   constexpr std::chrono::milliseconds status_interval{500};
   if (Clock::now() - status_at_ > status_interval) send_status();
 }

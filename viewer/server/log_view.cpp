@@ -118,7 +118,7 @@ void LogView::send_event_at(std::uint64_t offset) {
   if (!looking_.next(event)) return;
   session_.messages.take(event.channel, event.payload);
   times_.take(event.channel, event.payload, event.utime);
-  session_.foxglove.message(times_.interpolated_us(), event.channel, event.payload);
+  session_.pass_on(times_.interpolated_us(), event.channel, event.payload);
 }
 
 void LogView::seek(std::int64_t time_us) {
@@ -152,7 +152,7 @@ void LogView::play_to(std::int64_t time_us) {
       session_.messages.take(event.channel, event.payload);
     times_.take(event.channel, event.payload, event.utime);
     session_.traffic.take(event.channel, event.payload, times_.steady_us() - index_.epoch_us());
-    if (event.channel != "sim.asset") session_.foxglove.message(times_.interpolated_us(), event.channel, event.payload);
+    if (event.channel != "sim.asset") session_.pass_on(times_.interpolated_us(), event.channel, event.payload);
     if (event.offset >= last) break;
   }
   session_.messages.set_pace(static_cast<float>(speed_), paused_);
@@ -183,7 +183,9 @@ void LogView::advance(double wall_s) {
   while (const auto request = session_.server.take_request()) handle(*request);
   serve_foxglove();
   // A page that has just opened gets the present state.
-  const int clients = session_.server.clients() + session_.foxglove.clients();
+  if (session_.rosbridge) session_.rosbridge->release();
+  const int clients = session_.server.clients() + session_.foxglove.clients() +
+                      (session_.rosbridge ? session_.rosbridge->clients() : 0);
   if (clients > clients_) seek(static_cast<std::int64_t>(now_us_));
   clients_ = clients;
   const auto end = static_cast<double>(index_.end_us());
@@ -211,7 +213,8 @@ void LogView::serve_foxglove() {
                             return {true, ""};
                           });
   // While nothing is played, new subscriptions need the messages of the present time.
-  const bool is_new = session_.foxglove.take_subscribed();
+  const bool of_rosbridge = session_.rosbridge && session_.rosbridge->take_subscribed();
+  const bool is_new = session_.foxglove.take_subscribed() || of_rosbridge;
   if (is_new && foxglove_state().status != FoxgloveView::State::Status::playing)
     seek(static_cast<std::int64_t>(now_us_));
   session_.foxglove.show_time(index_.epoch_us() + static_cast<std::int64_t>(now_us_));

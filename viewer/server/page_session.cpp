@@ -27,6 +27,8 @@ PageSession::PageSession(const experiment::ViewOptions& options, Source source)
       messages(server,
                source == Source::world ? ViewMessages::Frames::from_elsewhere : ViewMessages::Frames::from_bodies),
       traffic(server, source == Source::world ? MessageFeed::Past::kept : MessageFeed::Past::forgotten),
-      foxglove(server) {}
+      foxglove(server) {
+  if (options.rosbridge || options.rosbridge_control) rosbridge.emplace(server, options.rosbridge_control);
+}
 
 }  // namespace viewer

@@ -3,12 +3,16 @@
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "bridges/web/web_server.hpp"
 #include "experiment/run/run_page.hpp"
 #include "viewer/server/foxglove_view.hpp"
 #include "viewer/server/page_traffic.hpp"
+#include "viewer/server/rosbridge_view.hpp"
 #include "viewer/server/view_messages.hpp"
 
 namespace viewer {
@@ -35,10 +39,17 @@ struct PageSession {
   /// Sends what is due of the messages themselves, at a simulated time.
   void flush_traffic(std::int64_t time_us) { traffic.flush(time_us, messages.scene(), messages.scene_number()); }
 
+  /// Passes a message on to the clients of other protocols, published at this UTC.
+  void pass_on(std::int64_t utime, std::string_view channel, std::span<const std::byte> payload) {
+    foxglove.message(utime, channel, payload);
+    if (rosbridge) rosbridge->message(utime, channel, payload);
+  }
+
   bridges::WebServer server;
   ViewMessages messages;
   PageTraffic traffic;
   FoxgloveView foxglove;
+  std::optional<RosbridgeView> rosbridge;  ///< none: it is not served
 };
 
 }  // namespace viewer

@@ -58,7 +58,7 @@ void RunView::message(std::string_view channel, std::span<const std::byte> paylo
   const std::int64_t utime = session_.messages.epoch_us() + at.count();
   if (at < message_time_) session_.foxglove.jump(utime);
   message_time_ = at;
-  session_.foxglove.message(utime, channel, payload);
+  session_.pass_on(utime, channel, payload);
 }
 
 void RunView::problem(const std::string& text) {
@@ -181,6 +181,7 @@ void RunView::serve(const sim::World& world, const bridges::ViewPublisher& publi
     handled = handled || request->op != "look";
   }
   serve_foxglove(world, publisher, control, execute);
+  if (session_.rosbridge) session_.rosbridge->serve(world, execute, publish_drive_);
   const Clock::time_point now = Clock::now();
   if (publish_drive_) drive_.run(world, now, control.paused, publish_drive_);
   if (session_.server.clients() == 0) return;
@@ -209,8 +210,9 @@ void RunView::serve_foxglove(const sim::World& world, const bridges::ViewPublish
   // While the run is paused, nothing else would say where the bodies are.
   if (!control.paused) return;
   session_.foxglove.show_time(utime());
-  if (session_.foxglove.take_subscribed())
-    session_.foxglove.message(utime(), "sim.bodies", shoal::encode(publisher.bodies()));
+  const bool of_rosbridge = session_.rosbridge && session_.rosbridge->take_subscribed();
+  if (session_.foxglove.take_subscribed() || of_rosbridge)
+    session_.pass_on(utime(), "sim.bodies", shoal::encode(publisher.bodies()));
 }
 
 void RunView::ended(const sim::World& world, const sim::RunControl& control, const std::string& why,

@@ -172,7 +172,8 @@ sim::WorldConfig world_of_text(const std::string& resolved_world) {
   diagnostics.throw_if_any();
   // What happens in the run, and how it is scored, does not concern navigation.
   std::erase_if(world.entries, [](const sim::ConfigNode::Entry& entry) {
-    static constexpr std::string_view others[] = {"actors", "events", "metrics", "pass", "plugins", "processes"};
+    static constexpr std::string_view others[] = {"actors", "bridges", "events",   "metrics",
+                                                  "pass",   "plugins", "processes"};
     return std::find(std::begin(others), std::end(others), entry.key) != std::end(others);
   });
   return sim::load_world_tree(std::move(world), "sim.info", options).config;

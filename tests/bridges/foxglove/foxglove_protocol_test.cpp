@@ -249,12 +249,12 @@ TEST_F(FoxgloveProtocolTest, WhatWaitsForAThreadIsBounded) {
   Viewer viewer(protocol_, 1);
   publish(0, "a.clock", shoal::utime_t{});
   viewer.subscribe(1, "/a/clock");
-  for (std::size_t i = 0; i < Protocol::max_undelivered_messages + 10; ++i)
+  for (std::size_t i = 0; i < bridges::ros2::WaitingMessages::max_messages + 10; ++i)
     protocol_.message(1, "a.clock", shoal::encode(shoal::utime_t{}));
   run();
   viewer.read();
   ASSERT_THAT(viewer.of("status"), SizeIs(1));
-  const std::size_t lost = 10 + Protocol::max_undelivered_messages - Protocol::max_queued_messages;
+  const std::size_t lost = 10 + bridges::ros2::WaitingMessages::max_messages - Protocol::max_queued_messages;
   EXPECT_THAT(viewer.of("status")[0]["message"].get<std::string>(), HasSubstr(": " + std::to_string(lost) + " mess"));
 }
 

@@ -559,4 +559,27 @@ TEST(LockstepService, ReportsTheEndUntilAllKnow) {
   EXPECT_EQ(tick.client.at(0).count, 1);
 }
 
+TEST(LockstepService, GivesMoreTimeAtTheEndToAClientThatStillRequestsMessages) {
+  Service s;
+  ASSERT_TRUE(s.join("pilot", "{session: 5, receives: [x]}", 1).ok);
+  s.gate.publish("x", bytes_of("last"), sim::Time(0));
+  shoal::sim_resend_t question{};
+  question.client = "pilot";
+  question.session = 5;
+  question.sequence = 1;
+  constexpr std::chrono::milliseconds limit(500);
+  const auto late = std::chrono::steady_clock::now() + 2 * limit;
+  bool answered = false;
+  s.lockstep.publish_end(
+      [&](std::chrono::milliseconds) {
+        s.test.send("sim.resend", question);
+        if (std::chrono::steady_clock::now() < late || answered) return;
+        s.acknowledge(0, "pilot", 5, 1);
+        answered = true;
+      },
+      limit);
+  EXPECT_TRUE(answered);
+  EXPECT_EQ(s.bundles.last().message.at(0).channel, "x");
+}
+
 }  // namespace

@@ -263,6 +263,27 @@ TEST(LockstepClient, InvalidPayloadsAreIgnored) {
   EXPECT_EQ(tick.step, 5);
 }
 
+TEST(LockstepClient, RepeatsItsLastAnswerWithItsRequestToLeave) {
+  FakeSimulator simulator;
+  LockstepClient client(own_url(1), "pilot");
+  std::thread thread([&] {
+    simulator.reply(simulator.await_request(), true, "");
+    simulator.tick(4, {"pilot"});
+    // The answer with the first request is lost, and comes with the second one.
+    EXPECT_EQ(simulator.await_ack().step, 4);
+    EXPECT_EQ(simulator.await_request().command, "leave");
+    EXPECT_EQ(simulator.await_ack().step, 4);
+    const auto request = simulator.await_request();
+    EXPECT_EQ(request.command, "leave");
+    simulator.reply(request, true, "");
+  });
+  client.join(0.1, 60s);
+  shoal::sim_tick_t tick{};
+  ASSERT_TRUE(client.next_tick(tick));
+  client.leave();
+  thread.join();
+}
+
 TEST(LockstepClient, EndsWhenStoppedAndAfterSilence) {
   LockstepClient client(own_url(1), "pilot");
   shoal::sim_tick_t tick{};
@@ -290,6 +311,16 @@ struct Listening {
   std::vector<std::string> seen;
   shoal::sim_tick_t tick{};
 };
+
+TEST(LockstepClient, EndsSoonAfterALastTickWhoseMessagesNeverCome) {
+  Listening test({"a"});
+  test.client.set_silence_limit(10min);
+  test.simulator.name("a", bytes_of("lost"));
+  test.simulator.tick(1, {"pilot"}, true);  // and the simulator ends: no one answers the requests
+  EXPECT_FALSE(test.client.next_tick(test.tick));
+  EXPECT_EQ(test.client.end(), LockstepClient::End::silence);
+  EXPECT_TRUE(test.seen.empty());
+}
 
 TEST(LockstepClient, HandlesMessagesInTheOrderOfTheTickAndOnce) {
   Listening test({"a", "b"});

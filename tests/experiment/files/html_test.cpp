@@ -21,16 +21,4 @@ TEST(Html, TextStaysText) {
   EXPECT_EQ(experiment::html_text(std::string("\x1b[31m\0", 6)), "\xef\xbf\xbd[31m\xef\xbf\xbd");
 }
 
-TEST(Html, Base64IsThatOfRfc4648) {
-  // The test vectors of section 10.
-  EXPECT_EQ(experiment::base64(""), "");
-  EXPECT_EQ(experiment::base64("f"), "Zg==");
-  EXPECT_EQ(experiment::base64("fo"), "Zm8=");
-  EXPECT_EQ(experiment::base64("foo"), "Zm9v");
-  EXPECT_EQ(experiment::base64("foob"), "Zm9vYg==");
-  EXPECT_EQ(experiment::base64("fooba"), "Zm9vYmE=");
-  EXPECT_EQ(experiment::base64("foobar"), "Zm9vYmFy");
-  EXPECT_EQ(experiment::base64("\xff\xff\xfe"), "///+");
-}
-
 }  // namespace

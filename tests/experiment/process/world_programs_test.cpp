@@ -72,6 +72,20 @@ TEST_F(WorldPrograms, WrongArgumentsAreNamedWithTheirPlaceAndAllAtOnce) {
               ElementsAre("worlds/test.yaml:3:24: process 'r': program 'shoal-rover': missing argument 'name'"));
 }
 
+TEST_F(WorldPrograms, BridgesAreProcessesWithAListOfTheirOwn) {
+  const std::string bridges =
+      "  - {name: p, command: [pilot]}\nbridges:\n  - {name: moos, program: shoal-rover, args: {name: r1}}\n"
+      "  - {name: ros2, client: ros2, program: pilot}\n";
+  const sim::LoadedWorld loaded = read(bridges, {"bridges.moos.args.name=r2"});
+  ASSERT_EQ(loaded.config.processes.size(), 3U);
+  EXPECT_THAT(loaded.config.processes[1].command, ElementsAre(folder_ / "shoal-rover", "--name=r2"));
+  EXPECT_FALSE(experiment::written_process(loaded, 0).is_bridge);
+  EXPECT_TRUE(experiment::written_process(loaded, 1).is_bridge);
+  EXPECT_THAT(experiment::free_bridges(loaded), ElementsAre("moos"));  // the other one is a client in lockstep
+  EXPECT_THAT(errors("bridges: [{name: moos, program: shoal-rover, args: {peer: 10.0.0.1, name: r1}}]\n"),
+              ElementsAre(HasSubstr("bridge 'moos': program 'shoal-rover': unknown argument 'peer'")));
+}
+
 TEST_F(WorldPrograms, TheCommandLineChangesArguments) {
   const std::string processes = "  - {name: r, program: shoal-rover, args: {name: r1}}\n";
   EXPECT_THAT(read(processes, {"processes.r.args.waypoints_m=[[5, 6]]", "processes.r.args.name=other"})

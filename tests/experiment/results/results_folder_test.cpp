@@ -53,6 +53,15 @@ TEST(ResultsLock, AFileIsNoFolder) {
               testing::StartsWith("cannot write results to '" + folder.file("results") + "': "));
 }
 
+TEST(CannotWriteText, SaysWhatToDo) {
+  EXPECT_EQ(experiment::cannot_write_text("out", EROFS),
+            "cannot write results to 'out': Read-only file system; choose another folder with --results");
+  EXPECT_EQ(experiment::cannot_write_text("out", ENOSPC),
+            "cannot write results to 'out': No space left on device; free some space, or choose another folder with "
+            "--results");
+  EXPECT_EQ(experiment::cannot_write_text("out", EIO), "cannot write results to 'out': Input/output error");
+}
+
 using namespace quiet_runs;
 
 namespace fs = std::filesystem;

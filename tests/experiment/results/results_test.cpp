@@ -87,6 +87,14 @@ TEST(Summary, HasTheSameKeysForEveryWorld) {
   EXPECT_THAT(summary.to_text(), testing::HasSubstr("process 'pilot' exited with code 1 at 2.50 s"));
 }
 
+TEST(Summary, SaysWhatMakesARunNotRepeatable) {
+  experiment::Summary summary;
+  EXPECT_THAT(summary.to_text(), testing::Not(testing::HasSubstr("repeatable")));
+  summary.not_repeatable = {"bridge moos"};
+  EXPECT_THAT(summary.to_text(), testing::HasSubstr("\n  not repeatable: bridge moos\n"));
+  EXPECT_EQ(nlohmann::json::parse(summary.to_json())["not_repeatable"], nlohmann::json({"bridge moos"}));
+}
+
 TEST(Summary, ListsEffectsOfSoundAndMessagesThatShadowsTook) {
   experiment::Summary summary;
   summary.acoustics.emplace();

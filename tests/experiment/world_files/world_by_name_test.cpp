@@ -43,6 +43,17 @@ TEST(WorldByName, AFileGoesBeforeAShippedOne) {
   EXPECT_TRUE(fs::equivalent(experiment::world_file("minimal.yaml"), test_support::source_path("worlds/minimal.yaml")));
 }
 
+TEST(WorldByName, AFolderOfResultsDoesNotHideTheWorldOfItsName) {
+  const test_support::ScratchFolder folder;
+  fs::create_directory(folder.file("minimal"));
+  fs::create_directory(folder.file("no_world"));
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.file(""));
+  EXPECT_TRUE(fs::equivalent(experiment::world_file("minimal"), test_support::source_path("worlds/minimal.yaml")));
+  EXPECT_EQ(experiment::world_file("no_world"), "no_world");
+  fs::current_path(before);
+}
+
 TEST(WorldByName, APathThatIsNotThereIsLeftToItsReader) {
   EXPECT_EQ(experiment::world_file("nowhere/minimal.yaml"), "nowhere/minimal.yaml");
 }

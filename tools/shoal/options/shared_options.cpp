@@ -81,6 +81,8 @@ void add_page_options(CLI::App& command, experiment::ViewOptions& view) {
       ->allow_extra_args(false);
   command.add_flag("--foxglove-control", view.foxglove_control,
                    "any local Foxglove client may pause, rewind and change the run, or play the log");
+  command.add_flag("--rosbridge", view.rosbridge,
+                   "serve rosbridge v2 at the port of the live page, for roslib and others: ws://127.0.0.1:PORT");
   command.add_option("--view-page", view.page_directory, "folder with the page, for its development")->type_name("DIR");
 }
 

@@ -331,7 +331,8 @@ Json world_schema() {
   const Special model{{{"allOf", {reference_to("vehicle")}}}, reference_to("vehicle_required")};
   const SchemaWriter writer(false, {{"devices", device}, {"model", model}}, definitions);
   Json schema = file_schema("world", writer, params_of<sim::WorldConfig>(), definitions);
-  add_program_schemas(schema["properties"]["processes"]["items"], schema["definitions"]);
+  for (const char* key : {"processes", "bridges"})
+    add_program_schemas(schema["properties"][key]["items"], schema["definitions"]);
   return schema;
 }
 

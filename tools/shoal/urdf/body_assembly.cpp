@@ -20,12 +20,12 @@ sim::Matrix3d inertia_of_point(const sim::Vector3d& c) {
   return c.squaredNorm() * sim::Matrix3d::Identity() - c * c.transpose();
 }
 
-bool same_shape(const UrdfShape& a, const UrdfShape& b) {
+bool same_shape(const RobotShape& a, const RobotShape& b) {
   return a.shape == b.shape && a.size_m == b.size_m && a.radius_m == b.radius_m && a.length_m == b.length_m &&
          a.mesh == b.mesh && a.scale == b.scale && a.X_LS.isApprox(b.X_LS, 1e-9);
 }
 
-bool same_shapes(const std::vector<UrdfShape>& a, const std::vector<UrdfShape>& b) {
+bool same_shapes(const std::vector<RobotShape>& a, const std::vector<RobotShape>& b) {
   if (a.size() != b.size()) return false;
   for (std::size_t i = 0; i < a.size(); ++i)
     if (!same_shape(a[i], b[i])) return false;
@@ -36,7 +36,7 @@ constexpr double min_mass_kg = 1e-9;  // of a body in Shoal
 
 /// Checks the moments of inertia: of a solid they are positive, and none is larger than the sum of the others.  One
 /// that is zero is not known.
-void check_inertia(ImportedBody& body, std::vector<UrdfNote>& notes) {
+void check_inertia(ImportedBody& body, std::vector<ImportNote>& notes) {
   const std::string who = "body '" + body.name + "'";
   const sim::Vector3d moments = sim::symmetric_eigenvalues(body.inertia_kgm2);
   constexpr double no_inertia_kgm2 = 1e-15;  // that of a grain of dust, 1e-9 kg and 1 mm
@@ -62,7 +62,7 @@ BodyAssembly::BodyAssembly(std::string name, const sim::Pose& X_VB, const sim::S
   body_.place = place;
 }
 
-void BodyAssembly::add(const UrdfLink& link, const sim::Pose& X_VL, std::vector<UrdfNote>& notes) {
+void BodyAssembly::add(const RobotLink& link, const sim::Pose& X_VL, std::vector<ImportNote>& notes) {
   const sim::Pose X_BL = body_.X_VB.inverse() * X_VL;
   // Mass.
   if (link.inertial && link.inertial->mass_kg > 0) {
@@ -80,7 +80,7 @@ void BodyAssembly::add(const UrdfLink& link, const sim::Pose& X_VL, std::vector<
     notes.push_back(
         {link.visuals.front().place,
          "link '" + sim::shortened(link.name) + "': <visual> is not imported: the shapes of <collision> are shown"});
-  const std::vector<UrdfShape>& shapes = only_visual ? link.visuals : link.collisions;
+  const std::vector<RobotShape>& shapes = only_visual ? link.visuals : link.collisions;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     ImportedPart part{shapes[i], X_BL * shapes[i].X_LS, only_visual};
     if (part.shape.name.empty()) part.shape.name = link.name + (shapes.size() > 1 ? "_" + std::to_string(i + 1) : "");
@@ -100,7 +100,7 @@ void BodyAssembly::allow_no_mass() {
   about_origin_ = 0.01 * sim::Matrix3d::Identity();
 }
 
-ImportedBody BodyAssembly::finish(NoMass no_mass, std::vector<UrdfNote>& notes) {
+ImportedBody BodyAssembly::finish(NoMass no_mass, std::vector<ImportNote>& notes) {
   if (has_mass()) {
     body_.center_of_mass_m = moment_kgm_ / body_.mass_kg;
     body_.inertia_kgm2 = about_origin_ - body_.mass_kg * inertia_of_point(body_.center_of_mass_m);
@@ -114,7 +114,7 @@ ImportedBody BodyAssembly::finish(NoMass no_mass, std::vector<UrdfNote>& notes) 
   body_.lacks_mass = !has_mass();
   // Names of parts are unique in their body.
   ShoalNames names("part", {});
-  std::vector<UrdfNote> ignored;
+  std::vector<ImportNote> ignored;
   for (ImportedPart& part : body_.parts) part.shape.name = names.add(part.shape.name, body_.place, ignored);
   return std::move(body_);
 }

@@ -14,9 +14,10 @@ class BodyAssembly {
   BodyAssembly(std::string name, const sim::Pose& X_VB, const sim::SourcePlace& place);
 
   const std::string& name() const { return body_.name; }
+  const sim::Pose& X_VB() const { return body_.X_VB; }
   /// Adds mass and shapes of a link at X_VL.  A link with collision shapes gives these; another one gives its visual
   /// shapes, which collide with nothing.
-  void add(const UrdfLink& link, const sim::Pose& X_VL, std::vector<UrdfNote>& notes);
+  void add(const RobotLink& link, const sim::Pose& X_VL, std::vector<ImportNote>& notes);
   bool has_mass() const;
   bool is_empty() const { return !has_mass() && body_.parts.empty(); }
   const sim::SourcePlace& place() const { return body_.place; }
@@ -24,7 +25,7 @@ class BodyAssembly {
   void allow_no_mass();
   /// Returns the body.  Throws sim::ConfigError when it has no mass and `no_mass` refuses that, or an impossible
   /// inertia.
-  ImportedBody finish(NoMass no_mass, std::vector<UrdfNote>& notes);
+  ImportedBody finish(NoMass no_mass, std::vector<ImportNote>& notes);
 
  private:
   ImportedBody body_;

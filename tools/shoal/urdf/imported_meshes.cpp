@@ -26,63 +26,6 @@ std::string shown_path(const std::string& path) {
   return "mesh '" + sim::shortened(sim::printable(path), 200) + "'";
 }
 
-bool is_below(const fs::path& path, const fs::path& folder) {
-  return std::mismatch(folder.begin(), folder.end(), path.begin(), path.end()).first == folder.end();
-}
-
-/// Finds mesh files in the folders that the user named.
-class MeshFolders {
- public:
-  MeshFolders(const std::string& urdf, const UrdfMeshOptions& options) : packages_(options.packages) {
-    const fs::path parent = fs::path(urdf).parent_path();
-    own_ = parent.empty() ? "." : parent;
-    add(own_);
-    for (const auto& [name, folder] : packages_) add(folder);
-  }
-
-  /// Path of the mesh that a shape names, with symbolic links resolved.
-  std::string find(const UrdfShape& shape) const {
-    const fs::path path = named(shape);
-    std::error_code error;
-    const fs::path resolved = fs::weakly_canonical(path, error);
-    const bool allowed = !error && std::any_of(allowed_.begin(), allowed_.end(),
-                                               [&](const fs::path& f) { return is_below(resolved, f); });
-    if (!allowed)
-      sim::throw_config_error(
-          shape.place, "",
-          shown_path(shape.mesh) + " must be below the folder of the URDF or a folder of --package NAME=DIR");
-    return resolved.string();
-  }
-
- private:
-  void add(const fs::path& folder) {
-    std::error_code error;
-    const fs::path resolved = fs::canonical(folder, error);
-    if (!error) allowed_.push_back(resolved);
-  }
-  fs::path named(const UrdfShape& shape) const {
-    const std::string& mesh = shape.mesh;
-    for (const std::string scheme : {"package://", "model://"}) {
-      if (!mesh.starts_with(scheme)) continue;
-      const std::size_t slash = mesh.find('/', scheme.size());
-      const std::string package = mesh.substr(scheme.size(), slash - scheme.size());
-      const auto folder = packages_.find(package);
-      if (folder == packages_.end())
-        sim::throw_config_error(
-            shape.place, "",
-            fmt::format("the folder of package '{0}' is unknown: give --package {0}=DIR", sim::printable(package)));
-      return fs::path(folder->second) / (slash == std::string::npos ? "" : mesh.substr(slash + 1));
-    }
-    const std::string file_scheme = "file://";
-    const fs::path path = mesh.starts_with(file_scheme) ? mesh.substr(file_scheme.size()) : mesh;
-    return own_ / path;  // an absolute path replaces the folder
-  }
-
-  std::map<std::string, std::string> packages_;
-  fs::path own_;
-  std::vector<fs::path> allowed_;
-};
-
 struct Bounds {
   sim::Vector3d low, high;
 };
@@ -112,8 +55,8 @@ void become_box(const sim::Mesh& mesh, ImportedPart& part) {
 /// Converts meshes, each file once.
 class MeshConversion {
  public:
-  MeshConversion(ImportedVehicle& vehicle, const UrdfMeshOptions& options)
-      : vehicle_(vehicle), options_(options), folders_(vehicle.source, options), names_("mesh", {}) {}
+  MeshConversion(ImportedVehicle& vehicle, const RobotMeshOptions& options)
+      : vehicle_(vehicle), options_(options), folders_(vehicle.source, options.folders), names_("mesh", {}) {}
 
   /// Converts a part.  Returns false, and adds a note, for one that is left out: a mesh file without triangles, and one
   /// that is only visual and cannot be read.  Too many triangles refuse the vehicle.
@@ -144,7 +87,7 @@ class MeshConversion {
             {part.shape.place, shown_path(part.shape.mesh) + " is flat: its bounding box replaces its convex hull"});
         return become_box(mesh, part);
       }
-      std::vector<UrdfNote> ignored;
+      std::vector<ImportNote> ignored;
       const std::string stem =
           std::filesystem::path(part.shape.mesh).stem().string() + (part.only_visual ? "" : "_hull");
       // A name is looked up by its original, which here is not unique.
@@ -159,14 +102,17 @@ class MeshConversion {
  private:
   using Key = std::tuple<std::string, double, double, double>;
 
-  Key key_of(const UrdfShape& shape) const {
-    return {folders_.find(shape), shape.scale.x(), shape.scale.y(), shape.scale.z()};
+  std::string path_of(const RobotShape& shape) const {
+    return folders_.find(shape.mesh, shown_path(shape.mesh), shape.place);
+  }
+  Key key_of(const RobotShape& shape) const {
+    return {path_of(shape), shape.scale.x(), shape.scale.y(), shape.scale.z()};
   }
   /// Returns whether a file exists and is a mesh without triangles, as programs write it: nothing but blanks, or an STL
   /// of only its head.
-  bool is_empty_file(const UrdfShape& shape) const {
+  bool is_empty_file(const RobotShape& shape) const {
     constexpr std::uintmax_t max_bytes = 1024;
-    const std::string path = folders_.find(shape);
+    const std::string path = path_of(shape);
     std::error_code error;
     const std::uintmax_t bytes = fs::file_size(path, error);
     if (error || bytes > max_bytes) return false;
@@ -180,7 +126,7 @@ class MeshConversion {
     if (bytes == header || (bytes == header + 4 && text.ends_with(std::string(4, '\0')))) return true;
     return text.starts_with("solid") && text.find("facet") == std::string::npos && text.find('\0') == std::string::npos;
   }
-  const sim::Mesh& read(const UrdfShape& shape) {
+  const sim::Mesh& read(const RobotShape& shape) {
     const Key key = key_of(shape);
     const auto known = meshes_.find(key);
     if (known != meshes_.end()) return known->second;
@@ -202,8 +148,8 @@ class MeshConversion {
   }
 
   ImportedVehicle& vehicle_;
-  const UrdfMeshOptions& options_;
-  MeshFolders folders_;
+  const RobotMeshOptions& options_;
+  RobotFolders folders_;
   ShoalNames names_;
   static constexpr std::size_t max_triangles = 2 * sim::max_mesh_triangles;
   std::size_t triangles_ = 0;
@@ -215,7 +161,7 @@ class MeshConversion {
 
 }  // namespace
 
-std::vector<MeshFile> convert_meshes(ImportedVehicle& vehicle, const UrdfMeshOptions& options) {
+std::vector<MeshFile> convert_meshes(ImportedVehicle& vehicle, const RobotMeshOptions& options) {
   MeshConversion conversion(vehicle, options);
   for (ImportedBody& body : vehicle.bodies) {
     if (options.use == MeshUse::none) {

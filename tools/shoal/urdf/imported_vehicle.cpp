@@ -5,18 +5,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "sim/config/message_text.hpp"
 #include "tools/shoal/urdf/body_assembly.hpp"
+#include "tools/shoal/urdf/robot_tree.hpp"
 #include "tools/shoal/urdf/shoal_names.hpp"
-#include "tools/shoal/urdf/urdf_tree.hpp"
 
 namespace tools {
 namespace {
 
-bool is_free_joint(UrdfJointType type) {
-  return type == UrdfJointType::floating || type == UrdfJointType::planar;
+bool is_free_joint(RobotJointType type) {
+  return type == RobotJointType::floating || type == RobotJointType::planar;
 }
 
 /// Walks from the root to the ends, and starts a body at each joint that is not fixed.
@@ -25,33 +26,33 @@ class VehicleAssembly {
   explicit VehicleAssembly(ImportedVehicle& vehicle) : vehicle_(vehicle) {}
 
   /// Adds the root, which may stand for the world.
-  void add_root(const UrdfLink& link, bool is_world) {
-    if (is_world) return places_.push_back({sim::Pose::Identity(), no_body});
-    start_body(link, sim::Pose::Identity());
-    places_.push_back({sim::Pose::Identity(), 0});
-    bodies_.front().add(link, sim::Pose::Identity(), vehicle_.notes);
+  void add_root(const RobotLink& link, const sim::Pose& X_VR, bool is_world) {
+    if (is_world) return add_place(link, {X_VR, no_body});
+    start_body(link, X_VR);
+    add_place(link, {X_VR, 0});
+    bodies_.front().add(link, X_VR, vehicle_.notes);
   }
   /// Adds a link whose parent was added before.
-  void add(const UrdfLink& link, const UrdfJoint& joint, std::size_t parent_number) {
+  void add(const RobotLink& link, const RobotJoint& joint, std::size_t parent_number) {
     const Place parent = places_[parent_number];
     const sim::Pose X_VL = parent.X_VL * joint.X_PJ;
-    const bool merges = joint.type == UrdfJointType::fixed && parent.body != no_body;
+    const bool merges = joint.type == RobotJointType::fixed && parent.body != no_body;
     if (!merges) start_body(link, X_VL);
-    places_.push_back({X_VL, merges ? parent.body : bodies_.size() - 1});
+    add_place(link, {X_VL, merges ? parent.body : bodies_.size() - 1});
     bodies_[places_.back().body].add(link, X_VL, vehicle_.notes);
     if (merges) return;
     if (is_free_joint(joint.type)) return note_free_joint(joint, parent);
     const std::string first = parent.body == no_body ? "world" : bodies_[parent.body].name();
-    add_joint(joint, {first, bodies_.back().name()}, X_VL.linear());
+    add_joint(joint, {first, bodies_.back().name()}, X_VL);
   }
   void fix_base() {
     if (bodies_.empty() || (places_.front().body == no_body && !has_free_root_)) return;  // it is fixed
     bodies_.front().allow_no_mass();
-    UrdfJoint joint;
+    RobotJoint joint;
     joint.name = "fixed_base";
-    add_joint(joint, {"world", bodies_.front().name()}, sim::Matrix3d::Identity());
+    add_joint(joint, {"world", bodies_.front().name()}, bodies_.front().X_VB());
   }
-  void finish(const UrdfLink& root, NoMass no_mass) {
+  void finish(const RobotLink& root, NoMass no_mass) {
     if (bodies_.empty()) sim::throw_config_error(root.place, "", "a robot needs a link other than 'world'");
     drop_empty_ends();
     for (ImportedJoint& joint : vehicle_.joints) find_followed(joint);
@@ -66,9 +67,9 @@ class VehicleAssembly {
   };
 
   /// A floating or planar joint from the root leaves the vehicle free.
-  void note_free_joint(const UrdfJoint& joint, const Place& parent) {
+  void note_free_joint(const RobotJoint& joint, const Place& parent) {
     const std::string who = "joint '" + sim::shortened(sim::printable(joint.name)) + "'";
-    const std::string type = joint.type == UrdfJointType::floating ? "floating" : "planar";
+    const std::string type = joint.type == RobotJointType::floating ? "floating" : "planar";
     if (parent.body != no_body || bodies_.size() > 1)
       sim::throw_config_error(joint.place, who,
                               "a joint of type '" + type +
@@ -85,6 +86,7 @@ class VehicleAssembly {
       const auto has_it = [&](const ImportedJoint& joint) { return joint.first == name || joint.second == name; };
       std::vector<ImportedJoint>& joints = vehicle_.joints;
       if (std::count_if(joints.begin(), joints.end(), has_it) != 1) continue;
+      std::erase_if(vehicle_.links, [&](const auto& entry) { return entry.second.body == name; });
       vehicle_.notes.push_back(
           {bodies_[i].place(),
            "body '" + name + "' has neither mass nor shapes and carries nothing: it and its joint are not imported"});
@@ -113,12 +115,19 @@ class VehicleAssembly {
                                                "', and no other joint that moves has this name"});
     joint.follows.reset();
   }
-  void start_body(const UrdfLink& link, const sim::Pose& X_VB) {
+  void start_body(const RobotLink& link, const sim::Pose& X_VB) {
     bodies_.emplace_back(body_names_.add(link.name, link.place, vehicle_.notes), X_VB, link.place);
   }
-  void add_joint(const UrdfJoint& joint, const JointEnds& ends, const sim::Matrix3d& R_VJ) {
+  void add_joint(const RobotJoint& joint, const JointEnds& ends, const sim::Pose& X_VJ) {
     const std::string name = joint_names_.add(joint.name, joint.place, vehicle_.notes);
-    vehicle_.joints.push_back(imported_joint(joint, name, ends, R_VJ, vehicle_.notes));
+    vehicle_.joint_names[joint.name] = name;
+    vehicle_.joints.push_back(imported_joint(joint, name, ends, X_VJ, vehicle_.notes));
+  }
+  void add_place(const RobotLink& link, const Place& place) {
+    places_.push_back(place);
+    LinkPlace& in_vehicle = vehicle_.links[link.name];
+    if (place.body == no_body) return;
+    in_vehicle = {bodies_[place.body].name(), bodies_[place.body].X_VB().inverse() * place.X_VL};
   }
 
   ImportedVehicle& vehicle_;
@@ -130,26 +139,26 @@ class VehicleAssembly {
 };
 
 /// Returns whether the root stands for the world: by its name, or because a free joint leads from it.
-bool is_world(const std::vector<UrdfBranch>& branches) {
-  const UrdfLink& root = *branches.front().link;
+bool is_world(const std::vector<RobotBranch>& branches) {
+  const RobotLink& root = *branches.front().link;
   const bool has_mass = root.inertial && root.inertial->mass_kg > 0;
   if (has_mass || !root.collisions.empty() || !root.visuals.empty()) return false;
   if (root.name == "world" && !root.inertial) return true;
   return std::any_of(branches.begin() + 1, branches.end(),
-                     [](const UrdfBranch& branch) { return branch.parent == 0 && is_free_joint(branch.joint->type); });
+                     [](const RobotBranch& branch) { return branch.parent == 0 && is_free_joint(branch.joint->type); });
 }
 
 }  // namespace
 
-ImportedVehicle vehicle_of(const UrdfRobot& robot, const std::string& file_name, Base base, NoMass no_mass) {
+ImportedVehicle vehicle_of(const RobotDescription& robot, const std::string& file_name, Base base, NoMass no_mass) {
   ImportedVehicle vehicle;
   vehicle.name = plain_name(robot.name);
   vehicle.source = file_name;
   vehicle.comment = robot.comment;
   vehicle.notes = robot.notes;
   VehicleAssembly assembly(vehicle);
-  const std::vector<UrdfBranch> branches = branches_of(robot);
-  assembly.add_root(*branches.front().link, is_world(branches));
+  const std::vector<RobotBranch> branches = branches_of(robot);
+  assembly.add_root(*branches.front().link, robot.X_VR, is_world(branches));
   for (std::size_t i = 1; i < branches.size(); ++i)
     assembly.add(*branches[i].link, *branches[i].joint, branches[i].parent);
   if (base == Base::fixed) assembly.fix_base();
@@ -160,51 +169,62 @@ ImportedVehicle vehicle_of(const UrdfRobot& robot, const std::string& file_name,
 namespace {
 
 /// Sets the stops of the joint and the range of its servo.
-void set_range(const UrdfJoint& from, ImportedJoint& joint, std::vector<UrdfNote>& notes) {
-  if (!from.lower || !from.upper) return;
-  const double low = *from.lower, high = *from.upper;
-  joint.servo_low = std::clamp(from.soft_lower.value_or(low), low, high);
-  joint.servo_high = std::clamp(from.soft_upper.value_or(high), low, high);
+void set_range(const RobotJoint& from, ImportedJoint& joint, std::vector<ImportNote>& notes) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  const double low = from.lower.value_or(-none), high = from.upper.value_or(none);
+  if (from.lower) joint.servo_low = std::clamp(from.soft_lower.value_or(low), low, high);
+  if (from.upper) joint.servo_high = std::clamp(from.soft_upper.value_or(high), low, high);
   // A run starts at zero of all joints, so a stop beyond zero would throw the joint into its range.
   const double max_stop = sim::joint_info(joint.type).max_stop;
-  const auto stop_at = [&](double limit, bool excludes_zero) -> std::optional<double> {
-    if (std::abs(limit) <= max_stop && !excludes_zero) return limit;
+  const auto stop_at = [&](std::optional<double> limit, bool excludes_zero) -> std::optional<double> {
+    if (!limit || (std::abs(*limit) <= max_stop && !excludes_zero)) return limit;
     notes.push_back(
         {from.place,
-         fmt::format("joint '{}': its limit {} limits only its servo: {}", joint.name, sim::number_text(limit),
+         fmt::format("joint '{}': its limit {} limits only its servo: {}", joint.name, sim::number_text(*limit),
                      excludes_zero ? "zero, where a run starts, is beyond it" : "a stop is at most two turns")});
     return std::nullopt;
   };
-  joint.low_stop = stop_at(low, low > 0);
-  joint.high_stop = stop_at(high, high < 0);
+  joint.low_stop = stop_at(from.lower, low > 0);
+  joint.high_stop = stop_at(from.upper, high < 0);
 }
 
 }  // namespace
 
-ImportedJoint imported_joint(const UrdfJoint& from, const std::string& name, const JointEnds& ends,
-                             const sim::Matrix3d& R_VJ, std::vector<UrdfNote>& notes) {
+ImportedJoint imported_joint(const RobotJoint& from, const std::string& name, const JointEnds& ends,
+                             const sim::Pose& X_VJ, std::vector<ImportNote>& notes) {
   ImportedJoint joint;
   joint.name = name;
   joint.place = from.place;
   joint.first = ends.parent;
   joint.second = ends.child;
-  joint.axis_V = R_VJ * from.axis_J;
+  joint.axis_V = X_VJ.linear() * from.axis_J;
+  if (!from.anchor_J.isZero(1e-12)) joint.anchor_V = X_VJ * from.anchor_J;
+  joint.has_device = from.has_device;
   // Shoal counts how the second body moves on the first, and `world` can only be the second.
   if (ends.parent == "world") {
     std::swap(joint.first, joint.second);
     joint.axis_V = -joint.axis_V;
   }
   switch (from.type) {
-    case UrdfJointType::fixed:
-    case UrdfJointType::floating:
-    case UrdfJointType::planar:
+    case RobotJointType::fixed:
+    case RobotJointType::floating:
+    case RobotJointType::planar:
       joint.type = sim::JointType::fixed;
       return joint;
-    case UrdfJointType::prismatic:
+    case RobotJointType::ball:
+      joint.type = sim::JointType::ball;
+      return joint;
+    case RobotJointType::universal:
+      joint.type = sim::JointType::universal;
+      joint.axis2_V = X_VJ.linear() * from.axis2_J;
+      if (ends.parent == "world") joint.axis2_V = std::exchange(joint.axis_V, -*joint.axis2_V);
+      joint.damping = from.damping;
+      return joint;
+    case RobotJointType::prismatic:
       joint.type = sim::JointType::slider;
       break;
-    case UrdfJointType::revolute:
-    case UrdfJointType::continuous:
+    case RobotJointType::revolute:
+    case RobotJointType::continuous:
       joint.type = sim::JointType::hinge;
   }
   joint.damping = from.damping;
@@ -224,7 +244,7 @@ ImportedJoint imported_joint(const UrdfJoint& from, const std::string& name, con
     }
   } else if (from.mimic) {
     if (from.max_velocity.value_or(0) > 0) joint.max_velocity = from.max_velocity;
-  } else {
+  } else if (!from.has_device) {
     notes.push_back(
         {from.place, "joint '" + name + "' gets no servo: that needs a <limit> with effort and velocity above 0"});
   }

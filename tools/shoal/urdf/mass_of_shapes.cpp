@@ -71,7 +71,7 @@ class HullSolids {
 };
 
 /// Solid of a part in its own frame.
-sim::MeshSolid solid_of_part(const UrdfShape& shape, HullSolids& hulls) {
+sim::MeshSolid solid_of_part(const RobotShape& shape, HullSolids& hulls) {
   switch (shape.shape) {
     case sim::PartShape::box:
       return box(shape.size_m);
@@ -133,7 +133,7 @@ std::string fault_of(const sim::Matrix3d& inertia_kgm2) {
                      shown(2));
 }
 
-void complete(ImportedBody& body, HullSolids& hulls, double density_kgpm3, std::vector<UrdfNote>& notes) {
+void complete(ImportedBody& body, HullSolids& hulls, double density_kgpm3, std::vector<ImportNote>& notes) {
   // The shapes that collide are kept in the vehicle file; visual ones are the last resort.
   sim::MeshSolid solid = solid_of_body(body, false, hulls);
   if (!is_solid(solid, density_kgpm3)) solid = solid_of_body(body, true, hulls);
@@ -222,6 +222,18 @@ void insert(const std::vector<sim::Vector3d>& points, std::uint32_t point, doubl
 }
 
 }  // namespace
+
+sim::MeshSolid collision_solid(const ImportedBody& body, const std::vector<MeshFile>& meshes) {
+  HullSolids hulls(meshes);
+  return solid_of_body(body, false, hulls);
+}
+
+std::optional<sim::MeshSolid> solid_of_shape(const RobotShape& shape) {
+  if (shape.shape == sim::PartShape::mesh) return std::nullopt;
+  const std::vector<MeshFile> none;
+  HullSolids hulls(none);
+  return solid_of_part(shape, hulls);
+}
 
 std::vector<sim::Vector3d> outermost_points(const std::vector<sim::Vector3d>& points) {
   constexpr int directions = 256;

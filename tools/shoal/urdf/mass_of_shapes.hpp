@@ -19,6 +19,12 @@ inline constexpr double usual_density_kgpm3 = 1000;
 void complete_masses(ImportedVehicle& vehicle, const std::vector<MeshFile>& meshes,
                      double density_kgpm3 = usual_density_kgpm3);
 
+/// Solid of the parts of a body that collide, in its frame; volume 0: there are none.  A mesh counts as its hull.
+sim::MeshSolid collision_solid(const ImportedBody& body, const std::vector<MeshFile>& meshes);
+
+/// Solid of a shape in its own frame; nothing for a mesh.
+std::optional<sim::MeshSolid> solid_of_shape(const RobotShape& shape);
+
 /// Returns the points that lie outermost in 256 directions, spread evenly (Fibonacci lattice), and along the axes.
 /// The hull has the bounding box of all points.
 std::vector<sim::Vector3d> outermost_points(const std::vector<sim::Vector3d>& points);

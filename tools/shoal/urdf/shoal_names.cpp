@@ -27,7 +27,8 @@ std::string plain_name(const std::string& text) {
 ShoalNames::ShoalNames(std::string kind, std::set<std::string> reserved)
     : kind_(std::move(kind)), taken_(std::move(reserved)) {}
 
-std::string ShoalNames::add(const std::string& original, const sim::SourcePlace& place, std::vector<UrdfNote>& notes) {
+std::string ShoalNames::add(const std::string& original, const sim::SourcePlace& place,
+                            std::vector<ImportNote>& notes) {
   const std::string plain = plain_name(original);
   std::string name = plain;
   int& number = last_number_.try_emplace(plain, 1).first->second;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/shoal/urdf/urdf_model.hpp"
+#include "tools/shoal/urdf/robot_description.hpp"
 
 namespace tools {
 
@@ -17,7 +17,7 @@ class ShoalNames {
   ShoalNames(std::string kind, std::set<std::string> reserved);
 
   /// Gives an original name its new one, and adds a note when they differ.
-  std::string add(const std::string& original, const sim::SourcePlace& place, std::vector<UrdfNote>& notes);
+  std::string add(const std::string& original, const sim::SourcePlace& place, std::vector<ImportNote>& notes);
   /// Returns the new name of an original one; null: it was not added.
   const std::string* find(const std::string& original) const {
     const auto found = names_.find(original);

@@ -8,20 +8,20 @@ namespace tools {
 
 namespace {
 
-UrdfJointType read_type(const UrdfElement& element) {
+RobotJointType read_type(const XmlElement& element) {
   const std::string type = element.text("type");
-  if (type == "fixed") return UrdfJointType::fixed;
-  if (type == "revolute") return UrdfJointType::revolute;
-  if (type == "continuous") return UrdfJointType::continuous;
-  if (type == "prismatic") return UrdfJointType::prismatic;
-  if (type == "floating") return UrdfJointType::floating;
-  if (type == "planar") return UrdfJointType::planar;
+  if (type == "fixed") return RobotJointType::fixed;
+  if (type == "revolute") return RobotJointType::revolute;
+  if (type == "continuous") return RobotJointType::continuous;
+  if (type == "prismatic") return RobotJointType::prismatic;
+  if (type == "floating") return RobotJointType::floating;
+  if (type == "planar") return RobotJointType::planar;
   element.refuse("'type' must be one of: continuous, fixed, floating, planar, prismatic, revolute, got '" +
                  sim::shortened(sim::printable(type)) + "'");
 }
 
-void read_axis(const UrdfElement& element, UrdfJoint& joint) {
-  const std::optional<UrdfElement> axis = element.child("axis");
+void read_axis(const XmlElement& element, RobotJoint& joint) {
+  const std::optional<XmlElement> axis = element.child("axis");
   if (axis) joint.axis_J = axis->vector("xyz", sim::Vector3d::UnitX());
   if (joint.axis_J.norm() < 1e-9) axis->refuse("the axis must not be zero");
   joint.axis_J.normalize();
@@ -30,7 +30,7 @@ void read_axis(const UrdfElement& element, UrdfJoint& joint) {
 constexpr double min_limit = 1e-9;  // of a joint_servo
 
 /// Reads a limit that a servo can have; 0, and a note, for another one.
-double read_bound(const UrdfElement& limit, const char* attribute, std::vector<UrdfNote>& notes) {
+double read_bound(const XmlElement& limit, const char* attribute, std::vector<ImportNote>& notes) {
   const auto leave_out = [&](const std::string& what) {
     notes.push_back({limit.place(), fmt::format("{}: '{}' of <limit> must be > 0, got {}: it is taken as unknown",
                                                 limit.who(), attribute, what)});
@@ -42,9 +42,9 @@ double read_bound(const UrdfElement& limit, const char* attribute, std::vector<U
   return value;
 }
 
-void read_limit(const UrdfElement& element, UrdfJoint& joint, std::vector<UrdfNote>& notes) {
-  const std::optional<UrdfElement> limit = element.child("limit");
-  const bool has_range = joint.type != UrdfJointType::continuous;
+void read_limit(const XmlElement& element, RobotJoint& joint, std::vector<ImportNote>& notes) {
+  const std::optional<XmlElement> limit = element.child("limit");
+  const bool has_range = joint.type != RobotJointType::continuous;
   if (!limit) {
     if (has_range) notes.push_back({element.place(), element.who() + " has no <limit>: it moves without bounds"});
     return;
@@ -64,8 +64,8 @@ void read_limit(const UrdfElement& element, UrdfJoint& joint, std::vector<UrdfNo
                               sim::number_text(*joint.upper)));
 }
 
-void read_soft_limits(const UrdfElement& element, UrdfJoint& joint, std::vector<UrdfNote>& notes) {
-  const std::optional<UrdfElement> safety = element.child("safety_controller");
+void read_soft_limits(const XmlElement& element, RobotJoint& joint, std::vector<ImportNote>& notes) {
+  const std::optional<XmlElement> safety = element.child("safety_controller");
   if (!safety) return;
   joint.soft_lower = safety->optional_number("soft_lower_limit");
   joint.soft_upper = safety->optional_number("soft_upper_limit");
@@ -75,21 +75,21 @@ void read_soft_limits(const UrdfElement& element, UrdfJoint& joint, std::vector<
   notes.push_back({safety->place(), element.who() + ": gains of <safety_controller> are not imported"});
 }
 
-double read_loss(const UrdfElement& dynamics, const char* attribute) {
+double read_loss(const XmlElement& dynamics, const char* attribute) {
   const double value = dynamics.optional_number(attribute).value_or(0);
   if (value < 0) dynamics.refuse(fmt::format("'{}' must be >= 0, got {}", attribute, sim::number_text(value)));
   return value;
 }
 
-void read_dynamics(const UrdfElement& element, UrdfJoint& joint) {
-  const std::optional<UrdfElement> dynamics = element.child("dynamics");
+void read_dynamics(const XmlElement& element, RobotJoint& joint) {
+  const std::optional<XmlElement> dynamics = element.child("dynamics");
   if (!dynamics) return;
   joint.damping = read_loss(*dynamics, "damping");
   joint.friction = read_loss(*dynamics, "friction");
 }
 
-void read_mimic(const UrdfElement& element, UrdfJoint& joint) {
-  const std::optional<UrdfElement> mimic = element.child("mimic");
+void read_mimic(const XmlElement& element, RobotJoint& joint) {
+  const std::optional<XmlElement> mimic = element.child("mimic");
   if (!mimic) return;
   joint.mimic = {mimic->text("joint"), mimic->optional_number("multiplier").value_or(1),
                  mimic->optional_number("offset").value_or(0)};
@@ -97,8 +97,8 @@ void read_mimic(const UrdfElement& element, UrdfJoint& joint) {
 
 }  // namespace
 
-UrdfJoint read_urdf_joint(UrdfElement element, std::vector<UrdfNote>& notes) {
-  UrdfJoint joint;
+RobotJoint read_urdf_joint(XmlElement element, std::vector<ImportNote>& notes) {
+  RobotJoint joint;
   joint.name = element.text("name");
   joint.place = element.place();
   element.set_who("joint '" + sim::shortened(sim::printable(joint.name)) + "'");
@@ -107,8 +107,8 @@ UrdfJoint read_urdf_joint(UrdfElement element, std::vector<UrdfNote>& notes) {
   joint.child = element.required_child("child").text("link");
   joint.X_PJ = element.origin();
   // These types have no single axis.
-  const bool has_axis = joint.type != UrdfJointType::fixed && joint.type != UrdfJointType::floating &&
-                        joint.type != UrdfJointType::planar;
+  const bool has_axis = joint.type != RobotJointType::fixed && joint.type != RobotJointType::floating &&
+                        joint.type != RobotJointType::planar;
   if (!has_axis) return joint;
   read_axis(element, joint);
   read_limit(element, joint, notes);

@@ -45,7 +45,7 @@ std::string inertia_text(const sim::Matrix3d& inertia_kgm2) {
 }
 
 std::string part_text(const ImportedPart& part) {
-  const UrdfShape& shape = part.shape;
+  const RobotShape& shape = part.shape;
   FlowMap map;
   map.add_text("name", shape.name);
   map.add_text("shape", std::string(sim::word_of(sim::part_shape_words, shape.shape)));
@@ -71,10 +71,11 @@ std::string body_text(const ImportedBody& body) {
   add_vector("position_m", body.X_VB.translation());
   add_vector("rpy_deg", rpy_deg_of(body.X_VB));
   FlowMap mass;
-  mass.add("model", "none");
+  if (body.water.empty()) mass.add("model", "none");
   mass.add("mass_kg", body.mass_kg);
   mass.add_unless_zero("center_of_mass_m", body.center_of_mass_m);
   mass.add("inertia_kgm2", inertia_text(body.inertia_kgm2));
+  mass.add(body.water);
   text += mass.lines("    hydrodynamics: ");
   if (!body.parts.empty()) text += "    parts:\n";
   for (const ImportedPart& part : body.parts) text += part_text(part);
@@ -86,12 +87,16 @@ std::string joint_text(const ImportedJoint& joint) {
   map.add_text("name", joint.name);
   map.add_text("type", std::string(sim::word_of(sim::joint_type_words, joint.type)));
   map.add("bodies", "[" + yaml_scalar(joint.first) + ", " + yaml_scalar(joint.second) + "]");
-  if (joint.type != sim::JointType::fixed) map.add("axis", joint.axis_V);
+  if (joint.anchor_V) map.add("anchor_m", *joint.anchor_V);
+  const bool has_axis = joint.type != sim::JointType::fixed && joint.type != sim::JointType::ball;
+  if (has_axis) map.add("axis", joint.axis_V);
   if (joint.low_stop) map.add("low_stop", *joint.low_stop);
   if (joint.high_stop) map.add("high_stop", *joint.high_stop);
   if (joint.damping > 0) map.add("damping", joint.damping);
   // Coulomb friction is a motor that holds; a device of the joint replaces it.
   if (joint.friction > 0 && !joint.has_servo() && !joint.follows) map.add("motor_max_force", joint.friction);
+  if (joint.axis2_V)
+    map.add("axis2", "{axis: " + short_list({joint.axis2_V->x(), joint.axis2_V->y(), joint.axis2_V->z()}) + "}");
   return map.lines("  - ");
 }
 
@@ -120,6 +125,17 @@ std::string follower_text(const ImportedJoint& joint) {
   if (joint.follows->offset != 0) map.add("offset", joint.follows->offset);
   if (joint.max_effort) map.add("max_effort", *joint.max_effort);
   if (joint.max_velocity) map.add("max_velocity", *joint.max_velocity);
+  return map.lines("  - ");
+}
+
+std::string device_text(const ImportedDevice& device) {
+  FlowMap map;
+  map.add_text("name", device.name);
+  map.add("type", device.type);
+  if (!device.body.empty()) map.add_text("body", device.body);
+  map.add_unless_zero("position_m", device.X_BS.translation());
+  map.add_unless_zero("rpy_deg", rpy_deg_of(device.X_BS));
+  map.add(device.keys);
   return map.lines("  - ");
 }
 
@@ -153,7 +169,7 @@ std::string head_text(const ImportedVehicle& vehicle, const std::string& schema)
   std::string text;
   if (!schema.empty()) text += "# yaml-language-server: $schema=" + schema + "\n";
   for (const std::string& line : vehicle.comment) text += "# " + in_utf8(line) + "\n";
-  text += "# Made by `shoal import urdf` from " + source_name(vehicle) +
+  text += "# Made by `shoal import " + vehicle.format + "` from " + source_name(vehicle) +
           ".  `hydrodynamics` holds mass and inertia of a body;\n# `model: none` is without forces of water.\n";
   text += "shoal: 1\nvehicle: " + yaml_scalar(vehicle.name) + "\ndescription: " + yaml_scalar(description_of(vehicle)) +
           "\n";
@@ -177,7 +193,7 @@ std::string vehicle_text(const ImportedVehicle& vehicle, const std::string& sche
   // Devices: a servo for each axis that the URDF drives, a player of motions for all of them, and one report of all.
   const bool moves = std::any_of(vehicle.joints.begin(), vehicle.joints.end(),
                                  [](const ImportedJoint& joint) { return joint.type != sim::JointType::fixed; });
-  if (moves) text += "\ndevices:\n";
+  if (moves || !vehicle.devices.empty()) text += "\ndevices:\n";
   for (const ImportedJoint& joint : vehicle.joints)
     if (joint.has_servo()) text += servo_text(joint);
   for (const ImportedJoint& joint : vehicle.joints)
@@ -190,6 +206,7 @@ std::string vehicle_text(const ImportedVehicle& vehicle, const std::string& sche
   if (has_servo && !is_taken)
     text += "  - {name: group, type: joint_group}\n  - {name: player, type: motion_player, group: group}\n";
   if (moves) text += "  - {name: joints, type: joint_state, rate_hz: 50}\n";
+  for (const ImportedDevice& device : vehicle.devices) text += device_text(device);
   return text;
 }
 
@@ -229,8 +246,18 @@ void FlowMap::add(const std::string& key, const sim::Vector3d& value) {
   add(key, short_list({value.x(), value.y(), value.z()}));
 }
 
+void FlowMap::add(const YamlEntries& entries) {
+  entries_.insert(entries_.end(), entries.begin(), entries.end());
+}
+
 void FlowMap::add_unless_zero(const std::string& key, const sim::Vector3d& value) {
   if (value.cwiseAbs().maxCoeff() >= 1e-12) add(key, value);
+}
+
+std::string FlowMap::text() const {
+  std::string all;
+  for (const auto& [key, value] : entries_) all += (all.empty() ? "" : ", ") + key + ": " + value;
+  return "{" + all + "}";
 }
 
 std::string FlowMap::lines(const std::string& prefix) const {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "sim/base/math.hpp"
@@ -25,11 +24,17 @@ class FlowMap {
   /// Adds a vector that is not zero.
   void add_unless_zero(const std::string& key, const sim::Vector3d& value);
 
+  void add(const YamlEntries& entries);
+  bool empty() const { return entries_.empty(); }
+  const YamlEntries& entries() const { return entries_; }
+
+  /// Returns the map on one line.
+  std::string text() const;
   /// Returns `prefix` and the map, broken between entries where a line would exceed 120 columns.
   std::string lines(const std::string& prefix) const;
 
  private:
-  std::vector<std::pair<std::string, std::string>> entries_;
+  YamlEntries entries_;
 };
 
 /// Returns a number with at most 10 significant digits, `0` below 1e-12.

@@ -28,6 +28,22 @@ TEST(ImportCommand, WritesAVehicleAndReplacesNone) {
   EXPECT_THAT(again.err, HasSubstr("already exists; --overwrite replaces it"));
 }
 
+TEST(ImportCommand, ConvertsAModelInSdf) {
+  const test_support::ScratchFolder folder;
+  std::ofstream(folder.file("m.sdf"))
+      << "<sdf version='1.9'><model name='m'><link name='a'><inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy>"
+         "<izz>1</izz></inertia></inertial><light name='l'/><sensor name='imu' type='imu'/></link></model></sdf>\n";
+  const std::string output = folder.file("m.yaml");
+  const test::Called called = test::call_shoal({"import", "sdf", folder.file("m.sdf"), "--output", output});
+  EXPECT_EQ(called.exit_code, 0) << called.err;
+  EXPECT_THAT(called.out, HasSubstr("vehicle 'm': 1 body, 0 joints"));
+  EXPECT_EQ(called.err, folder.file("m.sdf") + ":1: link 'a': <light> is not imported: a vehicle has `led` devices\n");
+  EXPECT_EQ(test::call_shoal({"check", output}).exit_code, 0);
+  const test::Called wrong = test::call_shoal({"import", "sdf", box_robot(folder), "--output", folder.file("n.yaml")});
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("this is URDF: use `shoal import urdf`"));
+}
+
 TEST(ImportCommand, SaysWhatIsWrongWithItsOptions) {
   const test_support::ScratchFolder folder;
   const auto wrong = [&](const std::vector<std::string>& more) {

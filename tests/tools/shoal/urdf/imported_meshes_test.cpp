@@ -37,7 +37,7 @@ class MeshFolder : public test_support::ScratchFolder {
     const std::string shape = "<" + kind + "><origin xyz=\"10 0 0\"/><geometry>" + mesh + "</geometry></" + kind + ">";
     return tools::vehicle_of(tools::read_urdf(test::robot_text(test::link_text("a", shape)), path), path);
   }
-  std::string error_of(const std::string& mesh, const tools::UrdfMeshOptions& options = {}) const {
+  std::string error_of(const std::string& mesh, const tools::RobotMeshOptions& options = {}) const {
     tools::ImportedVehicle with_mesh = vehicle(mesh);
     try {
       tools::convert_meshes(with_mesh, options);
@@ -93,20 +93,22 @@ TEST(ImportedMeshes, AreFoundInAPackage) {
   const std::string mesh = "<mesh filename=\"package://l_robot/meshes/l.obj\"/>";
   EXPECT_EQ(folder.error_of(mesh),
             folder.file("robot/r.urdf") + ":2: the folder of package 'l_robot' is unknown: give --package l_robot=DIR");
-  EXPECT_EQ(folder.error_of(mesh, {.packages = {{"l_robot", folder.file("robot")}}}), "");
+  EXPECT_EQ(folder.error_of(mesh, {.folders = {.packages = {{"l_robot", folder.file("robot")}}}}), "");
 }
 
 TEST(ImportedMeshes, MustBeInTheFolderOfTheUrdfOrOfAPackage) {
   const MeshFolder folder;
-  const std::string rule = "must be below the folder of the URDF or a folder of --package NAME=DIR";
+  const std::string rule = "must be below the folder of the file or a folder of --package NAME=DIR";
   EXPECT_THAT(folder.error_of("<mesh filename=\"../outside.obj\"/>"), HasSubstr("mesh '../outside.obj' " + rule));
   EXPECT_THAT(folder.error_of("<mesh filename=\"file://" + folder.file("outside.obj") + "\"/>"), HasSubstr(rule));
   EXPECT_THAT(folder.error_of("<mesh filename=\"package://p/../outside.obj\"/>",
-                              {.packages = {{"p", folder.file("robot/meshes")}}}),
+                              {.folders = {.packages = {{"p", folder.file("robot/meshes")}}}}),
               testing::AnyOf(HasSubstr(rule), HasSubstr("does not exist")));
   std::filesystem::create_symlink(folder.file("outside.obj"), folder.file("robot/link.obj"));
   EXPECT_THAT(folder.error_of("<mesh filename=\"link.obj\"/>"), HasSubstr(rule));
-  EXPECT_EQ(folder.error_of("<mesh filename=\"../outside.obj\"/>", {.packages = {{"all", folder.file("")}}}), "");
+  EXPECT_EQ(
+      folder.error_of("<mesh filename=\"../outside.obj\"/>", {.folders = {.packages = {{"all", folder.file("")}}}}),
+      "");
 }
 
 TEST(ImportedMeshes, NameTheLineOfAFileThatCannotBeRead) {

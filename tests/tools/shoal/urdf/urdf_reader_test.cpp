@@ -16,7 +16,7 @@ using test::notes_of;
 using test::robot_text;
 
 TEST(UrdfReader, ReadsShapesColorsAndTheCommentBeforeTheRobot) {
-  const tools::UrdfRobot robot = tools::read_urdf(
+  const tools::RobotDescription robot = tools::read_urdf(
       "<?xml version=\"1.0\"?>\n<!-- A robot.\n     Its numbers are made up. -->\n<robot name=\"r\">\n"
       "<material name=\"red\"><color rgba=\"1 0 0.5 1\"/></material>\n<link name=\"a\">\n"
       "<collision name=\"k\"><origin xyz=\"1 2 3\"/><geometry><box size=\"0.1 0.2 0.3\"/></geometry></collision>\n"
@@ -27,7 +27,7 @@ TEST(UrdfReader, ReadsShapesColorsAndTheCommentBeforeTheRobot) {
       "</link></robot>",
       "r.urdf");
   EXPECT_EQ(robot.comment, (std::vector<std::string>{"A robot.", "Its numbers are made up."}));
-  const tools::UrdfLink& link = robot.links.at(0);
+  const tools::RobotLink& link = robot.links.at(0);
   ASSERT_EQ(link.collisions.size(), 4u);
   EXPECT_EQ(link.collisions[0].name, "k");
   EXPECT_EQ(link.collisions[0].place.text(), "r.urdf:7");
@@ -46,7 +46,7 @@ TEST(UrdfReader, RefusesWhatIsNotUrdf) {
   EXPECT_EQ(import_error("<robot name=\"r\">\n<link>\n</robot>"), "r.urdf:2: is not well-formed XML");
   EXPECT_EQ(import_error(""), "r.urdf: is not well-formed XML");
   EXPECT_EQ(import_error("\n<sdf version=\"1.6\"/>"),
-            "r.urdf:2: the root element must be <robot>, got <sdf>; this is SDF");
+            "r.urdf:2: the root element must be <robot>, got <sdf>; this is SDF: use `shoal import sdf`");
   EXPECT_EQ(import_error("<mujoco/>"),
             "r.urdf:1: the root element must be <robot>, got <mujoco>; this is a model of MuJoCo");
   EXPECT_EQ(import_error(robot_text("")), "r.urdf:1: a robot needs a <link>");

@@ -49,7 +49,7 @@ inline std::string import_error(const std::string& urdf) {
 /// Notes of an import, one a line.
 inline std::string notes_of(const tools::ImportedVehicle& vehicle) {
   std::string lines;
-  for (const tools::UrdfNote& note : vehicle.notes) lines += note.place.text() + ": " + note.text + "\n";
+  for (const tools::ImportNote& note : vehicle.notes) lines += note.place.text() + ": " + note.text + "\n";
   return lines;
 }
 

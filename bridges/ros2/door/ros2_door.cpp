@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bridges/ros2/door/ros2_door.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <iostream>
+
+#include "bridges/lockstep_client/wait_warning.hpp"
+#include "bridges/ros2/node/node_types.hpp"
+#include "bridges/ros2/ros2_names.hpp"
+#include "shoal/message_codec.hpp"
+#include "shoal/sim_control_request_t.hpp"
+#include "shoal/sim_info_t.hpp"
+#include "shoal/utime_t.hpp"
+
+namespace bridges::ros2 {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Most topics out, topics in and vehicles of a bus, on which any program may publish.
+constexpr std::size_t max_topics = 5000;
+
+/// In place of a writer that cannot be made.
+constexpr std::int32_t no_endpoint = -1;
+
+/// Returns whether a channel is only for clients of the run and its record.
+bool is_internal(std::string_view channel) {
+  static constexpr std::array<std::string_view, 10> internal{
+      "sim.ack",    "sim.control", "sim.control.reply", "sim.hash",     "sim.inputs",
+      "sim.resend", "sim.resent",  "sim.signed",        "sim.snapshot", "sim.tick"};
+  return std::find(internal.begin(), internal.end(), channel) != internal.end();
+}
+
+std::string user_data(std::string_view type, std::string_view schema) {
+  return "typehash=" + type_hash(type, schema) + ";";
+}
+
+/// `/rover1/imu` is `rt/rover1/imu`.
+std::string dds_topic(const std::string& topic) {
+  return "rt" + topic;
+}
+
+std::vector<std::string> commands_of(const shoal::sim_vehicle_t& vehicle) {
+  std::vector<std::string> commands = vehicle.command_channel;
+  commands.insert(commands.end(), vehicle.command_types.begin(), vehicle.command_types.end());
+  return commands;
+}
+
+}  // namespace
+
+Ros2Door::Ros2Door(const Options& options)
+    : options_(options),
+      client_("shoal-ros2-" + std::to_string(getpid())),
+      lcm_(options.lcm_url),
+      participant_(options.network, "enclave=/;"),
+      services_(
+          {[this](const std::string& command, double value, const std::string& text) {
+             return ask(command, value, text);
+           },
+           [this](std::size_t service, std::span<const std::byte> cdr) { participant_.write(answers_[service], cdr); }},
+          options.controls) {
+  const auto key = options.run.empty() ? run_key_from_environment() : read_run_key(options.run);
+  if (key) signer_.emplace(*key, client_);
+  graph_ = participant_.add_writer("ros_discovery_info", "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_",
+                                   {1, true, ""});
+  add_services();
+  lcm_.listen_to_all();
+  receiver_ = std::thread([this] { receive(); });
+}
+
+Ros2Door::~Ros2Door() {
+  participant_.stop();
+  receiver_.join();
+}
+
+void Ros2Door::run(const std::function<bool()>& stops) {
+  WaitWarning no_bus("shoal-ros2: waiting for messages of a run at " + lcm_.url());
+  for (bool heard = false; !stops();) {
+    const auto message = lcm_.next(100ms);
+    heard = heard || message;
+    if (!heard) no_bus.look();
+    const std::scoped_lock lock(mutex_);
+    if (message) take_message(*message);
+    look_after(Clock::now());
+  }
+}
+
+void Ros2Door::add_services() {
+  for (std::size_t i = 0; i < SimServices::services().size(); ++i) {
+    const SimServices::Service& service = SimServices::services()[i];
+    std::string type = dds_type_name(service.type);
+    type.pop_back();
+    const Endpoint reader =
+        participant_.add_reader("rq/" + std::string(service.name) + "Request", type + "_Request_", {});
+    answers_.push_back(participant_.add_writer("rr/" + std::string(service.name) + "Reply", type + "_Response_", {}));
+    service_of_.emplace(reader, i);
+  }
+}
+
+void Ros2Door::take_message(const Received& message) {
+  try {
+    learn(message);
+  } catch (const shoal::MessageError&) {
+    return;  // of a stranger on the bus; the simulator warns
+  }
+  if (is_internal(message.channel) || command_channels_.contains(message.channel)) return;
+  if (table_.topics().size() < max_topics ||
+      table_.has(message.channel, static_cast<std::uint64_t>(shoal::fingerprint(message.payload))))
+    table_.encode(message.channel, message.payload, *this);
+}
+
+void Ros2Door::learn(const Received& message) {
+  using shoal::Finite;
+  if (message.channel == "sim.clock") {
+    utime_ = shoal::decode<shoal::utime_t>(message.payload, Finite::any).utime;
+  } else if (message.channel == "sim.state") {
+    auto state = shoal::decode<shoal::sim_state_t>(message.payload, Finite::any);
+    for (const std::string& name : state.vehicle)
+      if (vehicles_.size() < max_topics) vehicles_.try_emplace(name);
+    services_.know(std::move(state));
+  } else if (message.channel == "sim.vehicle") {
+    learn_vehicle(shoal::decode<shoal::sim_vehicle_t>(message.payload, Finite::any));
+  } else if (message.channel == "sim.info") {
+    auto info = shoal::decode<shoal::sim_info_t>(message.payload, Finite::any);
+    if (info.resolved_config == world_) return;
+    world_ = std::move(info.resolved_config);
+    for (auto& [name, vehicle] : vehicles_) vehicle.is_described = false;
+  } else if (message.channel == "sim.control.reply") {
+    const auto reply = shoal::decode<shoal::sim_control_reply_t>(message.payload, Finite::any);
+    if (reply.client == client_) services_.take_reply(reply, Clock::now());
+  }
+}
+
+void Ros2Door::learn_vehicle(const shoal::sim_vehicle_t& description) {
+  if (vehicles_.size() >= max_topics && !vehicles_.contains(description.vehicle)) return;
+  Vehicle& vehicle = vehicles_[description.vehicle];
+  if (description.present == 0) {
+    forget(vehicle);
+    vehicles_.erase(description.vehicle);
+    return;
+  }
+  vehicle.is_described = true;
+  if (vehicle.described == commands_of(description)) return;
+  forget(vehicle);
+  vehicle.described = commands_of(description);
+  command_channels_.insert(description.command_channel.begin(), description.command_channel.end());
+  for (CommandTopic& topic : command_topics(description)) {
+    if (commands_.size() >= max_topics) break;
+    try {
+      const Endpoint reader = participant_.add_reader(dds_topic(topic.name), dds_type_name(topic.type),
+                                                      {10, false, user_data(topic.type, topic.schema)});
+      vehicle.readers.push_back(reader);
+      commands_.emplace(reader, std::move(topic));
+    } catch (const BusError& error) {
+      warn_once(topic.name, error.what());
+    }
+  }
+  graph_changed_ = true;
+}
+
+void Ros2Door::forget(Vehicle& vehicle) {
+  for (const Endpoint reader : vehicle.readers) {
+    commands_.erase(reader);
+    participant_.remove(reader);
+  }
+  vehicle.readers.clear();
+  vehicle.described.clear();
+  graph_changed_ = true;
+}
+
+/// Ends calls that wait too long, asks again what was not answered, and tells changes of the graph.
+void Ros2Door::look_after(Clock::time_point now) {
+  if (now < next_look_) return;
+  next_look_ = now + 100ms;
+  services_.expire(now);
+  if (graph_changed_) publish_graph();
+  if (now < next_question_) return;
+  next_question_ = now + 1s;
+  int questions = 200;
+  for (const auto& [name, vehicle] : vehicles_)
+    if (!vehicle.is_described && questions-- > 0) ask("describe", 0, name);
+}
+
+/// Publishes rmw_dds_common/ParticipantEntitiesInfo, by which ROS 2 knows the endpoints of a node.
+void Ros2Door::publish_graph() {
+  graph_changed_ = false;
+  std::vector<Endpoint> readers, writers = answers_;
+  for (const auto& [reader, topic] : commands_) readers.push_back(reader);
+  for (const auto& [reader, service] : service_of_) readers.push_back(reader);
+  std::copy_if(writers_.begin(), writers_.end(), std::back_inserter(writers), [](Endpoint each) { return each > 0; });
+  std::vector<std::byte> cdr;
+  CdrWriter out(cdr);
+  out.put_array(std::span<const std::uint8_t>(participant_.guid()));
+  out.put_count(1);
+  out.put(std::string_view("/"));
+  out.put(std::string_view("shoal"));
+  for (const auto* endpoints : {&readers, &writers}) {
+    out.put_count(endpoints->size());
+    for (const Endpoint each : *endpoints) out.put_array(std::span<const std::uint8_t>(participant_.guid_of(each)));
+  }
+  participant_.write(graph_, cdr);
+}
+
+std::int32_t Ros2Door::ask(const std::string& command, double value, const std::string& text) {
+  shoal::sim_control_request_t request{};
+  request.utime = utime_;
+  request.id = ++last_request_;
+  request.client = client_;
+  request.command = command;
+  request.value = value;
+  request.text = text;
+  const sim::Bytes payload = shoal::encode(request);
+  lcm_.publish("sim.control", signer_ ? signer_->sign("sim.control", payload) : payload);
+  return last_request_;
+}
+
+bool Ros2Door::wants(const Topic& topic) {
+  if (topic.encoding != "cdr" || (topic.name == "/tf" && !options_.publishes_tf)) return false;
+  writers_.resize(std::max(writers_.size(), topic.number + 1));
+  Endpoint& writer = writers_[topic.number];
+  if (writer == 0) {
+    const int depth = topic.latched ? 1 : 10;
+    try {
+      writer = participant_.add_writer(dds_topic(topic.name), dds_type_name(topic.type),
+                                       {depth, topic.latched, user_data(topic.type, topic.schema)});
+      graph_changed_ = true;
+    } catch (const BusError& error) {
+      writer = no_endpoint;
+      warn_once(topic.name, error.what());
+    }
+  }
+  if (writer == no_endpoint) return false;
+  return topic.latched || participant_.has_readers(writer);
+}
+
+bool Ros2Door::take(const Topic& topic, std::span<const std::byte> bytes) {
+  ++counts_.published;
+  if (!participant_.write(writers_[topic.number], bytes)) ++counts_.late;
+  return true;
+}
+
+void Ros2Door::receive() {
+  while (const auto readers = participant_.wait()) {
+    for (const Endpoint reader : *readers)
+      while (const auto cdr = participant_.take(reader)) {
+        await_client(reader);
+        const std::scoped_lock lock(mutex_);
+        deliver(reader, *cdr);
+      }
+  }
+}
+
+/// Reports the first mistake of a topic: another program may have taken its name with another type.
+void Ros2Door::warn_once(const std::string& topic, const std::string& what) {
+  if (warned_.insert(topic).second) std::cerr << "shoal-ros2: " << topic << ": " << what << std::endl;
+}
+
+/// The call of a new client may come before its reader of the responses is known.
+void Ros2Door::await_client(Endpoint reader) const {
+  const auto service = service_of_.find(reader);
+  if (service == service_of_.end()) return;
+  const auto until = Clock::now() + 100ms;
+  while (!participant_.has_readers(answers_[service->second]) && Clock::now() < until) std::this_thread::sleep_for(1ms);
+}
+
+void Ros2Door::deliver(Endpoint reader, std::span<const std::byte> cdr) {
+  const auto command = commands_.find(reader);
+  const auto service = service_of_.find(reader);
+  ++counts_.commands;
+  try {
+    if (command != commands_.end())
+      lcm_.publish(command->second.channel, command->second.convert(cdr, utime_));
+    else if (service != service_of_.end())
+      services_.call(service->second, cdr, Clock::now());
+  } catch (const shoal::MessageError& error) {
+    ++counts_.refused;
+    warn_once(command != commands_.end() ? command->second.name : SimServices::services()[service->second].name,
+              std::string("a message is ignored: ") + error.what());
+  }
+}
+
+}  // namespace bridges::ros2

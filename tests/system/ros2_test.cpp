@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <stdlib.h>
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "bridges/lcm/lcm_listener.hpp"
+#include "shoal/image_t.hpp"
+#include "shoal/imu_t.hpp"
+#include "shoal/message_codec.hpp"
+#include "tests/bridges/dds/own_domain.hpp"
+#include "tests/system/shoal_program.hpp"
+
+// `shoal-ros2` with Fast DDS at the other end: ros2_judge has no code of Shoal.
+
+namespace {
+
+using namespace system_test;
+using testing::HasSubstr;
+
+class Ros2Test : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(built("ros2_judge")))
+      GTEST_SKIP() << "Fast DDS is not installed: nothing judges shoal-ros2";
+    setenv("ROS_DOMAIN_ID", std::to_string(dds_test::own_domain()).c_str(), 1);
+    door_ = std::make_unique<Program>(std::vector<std::string>{built("shoal-ros2"), "--lcm-url", own_url()});
+  }
+  std::unique_ptr<Program> judge(const std::vector<std::string>& arguments) const {
+    std::vector<std::string> all{built("ros2_judge"), std::to_string(dds_test::own_domain())};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    return std::make_unique<Program>(all);
+  }
+  /// Publishes messages at a rate until the judge has matched, and then a number of them with rising stamps.
+  template <class Message>
+  void publish(Program& judge, const std::string& channel, Message message, int count,
+               std::chrono::microseconds period) {
+    bridges::LcmListener bus(own_url());
+    const auto send = [&] {
+      message.utime += 1000;
+      bus.publish(channel, shoal::encode(message));
+    };
+    // The door announces a topic with its first message.
+    ASSERT_TRUE(await([&] {
+      if (judge.output().empty()) {
+        message.utime = 0;
+        bus.publish(channel, shoal::encode(message));
+      }
+      return !judge.output().empty();
+    }));
+    auto next = std::chrono::steady_clock::now();
+    for (int i = 0; i < count; ++i) {
+      send();
+      std::this_thread::sleep_until(next += period);
+    }
+  }
+
+  std::unique_ptr<Program> door_;
+};
+
+TEST_F(Ros2Test, AReaderOfFastDdsWithDefaultSettingsDrivesARoverByItsOdometry) {
+  const ScratchFolder folder;
+  write_file(folder.file("world.yaml"),
+             "shoal: 1\nname: yard\nrun: {duration_s: forever, speed: 1}\n"
+             "objects: [{name: ground, fixed: true, parts: [{shape: plane}]}]\n"
+             "vehicles: [{name: rover1, file: probe.yaml}]\n");
+  write_file(folder.file("probe.yaml"), "include: " + source("vehicles/rover.yaml") +
+                                            "\nshoal: 1\nvehicle: probe\n"
+                                            "devices: [{name: imu, type: imu, preset: adis16470, rate_hz: 100}]\n");
+  Program run({built("shoal"), "run", folder.file("world.yaml"), "--lcm-url", own_url()});
+  const auto driver = judge({"drive", "rover1"});
+  EXPECT_EQ(driver->wait(), 0) << driver->output() << driver->errors() << door_->errors() << run.errors();
+  // The clock is that of the world: its epoch, 2026-01-01, is 1767225600 s after 1970.
+  EXPECT_THAT(driver->output(), HasSubstr("frame rover1/imu, child frame rover1, gravity 10 m/s2, clock 17672256"));
+  run.send_signal(SIGINT);
+  EXPECT_EQ(run.wait(), 130);
+  door_->send_signal(SIGTERM);
+  EXPECT_EQ(door_->wait(), 143);
+  EXPECT_THAT(door_->errors(), HasSubstr("on this machine only"));
+}
+
+TEST_F(Ros2Test, NoMessageOfASensorAt1kHzIsLost) {
+  constexpr int messages = 3000;
+  const auto counter = judge({"imu", "/v/imu/imu", std::to_string(messages)});
+  publish(*counter, "v.imu", shoal::imu_t{}, messages, 1ms);
+  EXPECT_EQ(counter->wait(), 0) << counter->output() << counter->errors();
+}
+
+TEST_F(Ros2Test, NoImageOf640By480At30HzIsLost) {
+  constexpr int images = 60;
+  shoal::image_t image{};
+  image.width = 640;
+  image.height = 480;
+  image.row_stride = 640 * 3;
+  image.pixelformat = 859981650;  // RGB, 8 bits each
+  image.size = image.row_stride * image.height;
+  image.data.assign(static_cast<std::size_t>(image.size), 100);
+  const auto counter = judge({"image", "/v/camera/image", std::to_string(images)});
+  publish(*counter, "v.camera", image, images, 33ms);
+  EXPECT_EQ(counter->wait(), 0) << counter->output() << counter->errors();
+}
+
+}  // namespace
