@@ -211,9 +211,8 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
   autonomy::set_help_end(
       declared, {"shoal-nmea --vehicle boat", "shoal-nmea --vehicle boat --steer --listen 0.0.0.0:10110"},
       "Each period it sends RMC, GGA, VTG, HDT, ROT, VHW, DBT, DPT, MWV and XDR, as far as the vehicle has devices for "
-      "them: gps, ahrs, compass, inclinometer, water_speed, dvl, altimeter, pressure, ctd, wind_sensor; and what an "
-      "ais "
-      "device sends and receives, as AIVDO and AIVDM.  Clients that do not take what they are sent are cut.  "
+      "them: gps, ahrs, compass, inclinometer, water_speed, dvl, altimeter, pressure, ctd, wind_sensor; and, as AIVDO "
+      "and AIVDM, what an ais device sends and receives.  Clients that do not take what they are sent are cut.  "
       "docs/guides/attach_nmea.md explains it.");
 }
 
