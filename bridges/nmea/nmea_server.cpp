@@ -170,7 +170,10 @@ void NmeaServer::accept_client() {
   socklen_t size = sizeof address;
   auto* any = reinterpret_cast<sockaddr*>(&address);
   FileDescriptor socket(accept4(listener_.number(), any, &size, SOCK_NONBLOCK | SOCK_CLOEXEC));
-  if (socket.number() < 0) return;
+  if (socket.number() < 0) {
+    if (!is_later()) poll(nullptr, 0, 100);  // no descriptor is free: the client keeps waiting, but not in a busy loop
+    return;
+  }
   const std::string name = text_of(any, size);
   const bool full = clients_.size() >= max_clients;
   if (options_.log)

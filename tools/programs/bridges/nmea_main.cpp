@@ -197,9 +197,9 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
   declared.subscribes({});
   declared.text("vehicle", "VEHICLE", options.vehicle, "vehicle whose instruments these are").required();
   declared.text("name", "NAME", options.name, "its client name in the run");
-  declared.text("listen", "HOST:PORT", options.listen,
-                "address of the TCP server; port 0: any free one; none: no server");
-  declared.text("udp", "HOST:PORT", options.udp, "also sends each sentence there in a datagram");
+  declared.text("listen", "ADDRESS", options.listen,
+                "HOST:PORT of the TCP server; port 0: any free one; none: no server");
+  declared.text("udp", "ADDRESS", options.udp, "HOST:PORT to which each sentence is also sent in a datagram");
   declared.flag("steer", options.steer, "sentences of clients steer: APB and RMB command the autopilot of the vehicle");
   declared.number("variation_deg", options.variation_deg, -180, 180,
                   "magnetic variation of headings to steer, positive to the east");
@@ -209,13 +209,10 @@ void declare(command_line::DeclaredOptions& declared, Options& options) {
                 "joins the lockstep, so that the world waits at each period");
   options.participation.declare(declared);
   autonomy::set_help_end(
-      declared,
-      {"shoal-nmea --vehicle boat", "shoal-nmea --vehicle boat --steer --listen 0.0.0.0:10110",
-       "gpspipe -w  # after: gpsd -N tcp://127.0.0.1:10110"},
+      declared, {"shoal-nmea --vehicle boat", "shoal-nmea --vehicle boat --steer --listen 0.0.0.0:10110"},
       "Each period it sends RMC, GGA, VTG, HDT, ROT, VHW, DBT, DPT, MWV and XDR, as far as the vehicle has devices for "
-      "them: gps, ahrs, compass, inclinometer, water_speed, dvl, altimeter, pressure, ctd, wind_sensor; and what an "
-      "ais "
-      "device sends and receives, as AIVDO and AIVDM.  Clients that do not take what they are sent are cut.  "
+      "them: gps, ahrs, compass, inclinometer, water_speed, dvl, altimeter, pressure, ctd, wind_sensor; and, as AIVDO "
+      "and AIVDM, what an ais device sends and receives.  Clients that do not take what they are sent are cut.  "
       "docs/guides/attach_nmea.md explains it.");
 }
 
