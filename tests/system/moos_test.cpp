@@ -97,7 +97,7 @@ TEST(Moos, AHelmOfTheCommunitySailsTheAlphaMissionAndTheRunRepeats) {
     EXPECT_THAT(ended.output, Not(HasSubstr("not repeatable")));
     EXPECT_THAT(db.last("NODE_REPORT_LOCAL").first.text, HasSubstr("NAME=alpha,TYPE=usv,"));
     EXPECT_NEAR(db.last("NAV_LAT").first.value, 43.8253 - 100 / 111'100.0, 2e-4);  // a degree has 111.1 km here
-    EXPECT_EQ(db.written("SHOAL_TIME"), 1800);
+    EXPECT_EQ(db.written("SHOAL_TIME"), 1801);                                     // ten a second, and the start
     if (run == 0)
       hash = run_hash_in(ended);
     else
@@ -161,25 +161,32 @@ TEST(FrontSeat, ABackSeatSteersTheBoat) {
   const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   const sockaddr_in address = moos_test::loopback(std::stoi(port));
   ASSERT_EQ(connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-  const std::string orders =
-      "START,LAT:43.8253,LON:-70.3304,DURATION:0,FREQ:10,WARP:10\r\n"
-      "CMD,HEADING:200,SPEED:1,DEPTH:0\r\n";
-  ASSERT_EQ(send(fd, orders.data(), orders.size(), MSG_NOSIGNAL), static_cast<ssize_t>(orders.size()));
   const timeval wait{240, 0};
   setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &wait, sizeof wait);
+  const auto write = [&](const std::string& line) {
+    EXPECT_EQ(send(fd, line.data(), line.size(), MSG_NOSIGNAL), static_cast<ssize_t>(line.size()));
+  };
   std::string text;
+  const auto read_until = [&](const auto& condition) {
+    char bytes[4096];
+    for (ssize_t count = 1; count > 0 && !condition() && text.size() < 1'000'000;) {
+      count = recv(fd, bytes, sizeof bytes, 0);
+      if (count > 0) text.append(bytes, static_cast<std::size_t>(count));
+    }
+    return condition();
+  };
+  write("START,LAT:43.8253,LON:-70.3304,DURATION:0,FREQ:10,WARP:10\r\n");
+  // A command before the run has begun would reach no one.
+  EXPECT_TRUE(read_until([&] { return text.find("NAV,LAT:43.825") != std::string::npos; })) << seat.errors();
+  write("CMD,HEADING:200,SPEED:1,DEPTH:0\r\n");
   const auto turned = [&] {  // NAV,...,HEADING:199.8,SPEED:1.0
     const auto at = text.rfind("HEADING:", text.rfind('\n'));
     return at != std::string::npos && std::abs(std::stod(text.substr(at + 8)) - 200) < 5;
   };
-  char bytes[4096];
-  for (ssize_t count = 1; count > 0 && !turned() && text.size() < 10'000'000;) {
-    count = recv(fd, bytes, sizeof bytes, 0);
-    if (count > 0) text.append(bytes, static_cast<std::size_t>(count));
-  }
+  EXPECT_TRUE(read_until(turned)) << text.substr(0, 1000) << seat.errors();
   close(fd);
-  EXPECT_TRUE(turned()) << text.substr(0, 1000) << seat.errors();
-  EXPECT_THAT(text, HasSubstr("CTRL,STATE:PAYLOAD\r\nCMD,RESULT:OK\r\n"));
+  EXPECT_THAT(text, testing::StartsWith("CTRL,STATE:PAYLOAD\r\n"));
+  EXPECT_THAT(text, HasSubstr("\r\nCMD,RESULT:OK\r\n"));
   EXPECT_EQ(control({"quit"}).exit_code, 0);
   EXPECT_EQ(run.wait(), 0) << run.errors();
 }

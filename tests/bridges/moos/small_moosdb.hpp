@@ -296,9 +296,10 @@ class SmallMoosClient {
     greeting.resize(32, '\0');
     Msg hello{'i', 'S', "asynchronous"};
     hello.text = name;
+    hello = stamped(hello);
     write(greeting + packet({hello}));
     std::vector<Msg> orders;
-    for (const std::string& key : keys) orders.push_back({'R', 'D', key});
+    for (const std::string& key : keys) orders.push_back(stamped({'R', 'D', key}));
     if (!orders.empty()) write(packet(orders));
   }
   ~SmallMoosClient() { close(fd_); }
