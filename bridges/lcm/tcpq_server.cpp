@@ -293,7 +293,14 @@ void TcpqServer::cut(Client& client, const std::string& why) {
   shutdown(client.socket.number(), SHUT_RDWR);
   client.output.clear();
   client.patterns = {};
-  if (!why.empty()) report_("client " + client.name + " is disconnected: " + why);
+  if (why.empty()) return;
+  // Clients that come again and again must not fill the terminal, or the disk.
+  constexpr int max_lines_per_s = 10;
+  if (const auto now = Clock::now(); now - lines_since_ > std::chrono::seconds(1)) {
+    lines_since_ = now;
+    lines_ = 0;
+  }
+  if (++lines_ <= max_lines_per_s) report_("client " + client.name + " is disconnected: " + why);
 }
 
 void TcpqServer::cut_silent_clients(Clock::time_point now) {

@@ -89,7 +89,7 @@ class TcpqServer {
   void take_requests(Client& client);
   void pass_on(const TcpqRequest& message);
   void send(Client& client);
-  /// Disconnects a client, with a line that says why; empty: it has left.
+  /// Disconnects a client, with a line that says why, at most ten a second; empty: it has left.
   void cut(Client& client, const std::string& why);
   void cut_silent_clients(Clock::time_point now);
 
@@ -99,6 +99,8 @@ class TcpqServer {
   std::uint16_t port_ = 0;
   std::list<Client> clients_;
   std::vector<char> part_ = std::vector<char>(std::size_t{256} << 10);  // of the bytes of a client
+  Clock::time_point lines_since_{};
+  int lines_ = 0;  // since then
   std::atomic<std::uint64_t> messages_ = 0;
 };
 

@@ -97,11 +97,6 @@ std::string subscription(const std::string& pattern) {
   return number(2) + number(static_cast<std::uint32_t>(pattern.size())) + pattern;
 }
 
-std::string publication(const std::string& channel, const std::string& payload) {
-  return number(1) + number(static_cast<std::uint32_t>(channel.size())) + channel +
-         number(static_cast<std::uint32_t>(payload.size())) + payload;
-}
-
 TEST_F(TcpqServerTest, EveryMessageOfAFastSenderArrivesCompleteAndInOrder) {
   serve();
   LcmListener sender(url()), receiver(url());
