@@ -76,7 +76,8 @@ void BodyAssembly::add(const RobotLink& link, const sim::Pose& X_VL, std::vector
   }
   // Shapes.
   const bool only_visual = link.collisions.empty();
-  if (!only_visual && !link.visuals.empty() && !same_shapes(link.collisions, link.visuals))
+  const bool are_same = same_shapes(link.collisions, link.visuals);
+  if (!only_visual && !link.visuals.empty() && !are_same)
     notes.push_back(
         {link.visuals.front().place,
          "link '" + sim::shortened(link.name) + "': <visual> is not imported: the shapes of <collision> are shown"});
@@ -84,7 +85,7 @@ void BodyAssembly::add(const RobotLink& link, const sim::Pose& X_VL, std::vector
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     ImportedPart part{shapes[i], X_BL * shapes[i].X_LS, only_visual};
     if (part.shape.name.empty()) part.shape.name = link.name + (shapes.size() > 1 ? "_" + std::to_string(i + 1) : "");
-    if (part.shape.color.empty() && !link.visuals.empty()) part.shape.color = link.visuals.front().color;
+    if (part.shape.color.empty() && !link.visuals.empty()) part.shape.color = link.visuals[are_same ? i : 0].color;
     body_.parts.push_back(std::move(part));
   }
 }
