@@ -27,6 +27,7 @@ class Ros2Test : public testing::Test {
   void SetUp() override {
     if (!std::filesystem::exists(built("ros2_judge")))
       GTEST_SKIP() << "Fast DDS is not installed: nothing judges shoal-ros2";
+    setenv("FASTRTPS_DEFAULT_PROFILES_FILE", source("tests/system/ros2_judge/loopback.xml").c_str(), 1);
     setenv("ROS_DOMAIN_ID", std::to_string(dds_test::own_domain()).c_str(), 1);
     door_ = std::make_unique<Program>(std::vector<std::string>{built("shoal-ros2"), "--lcm-url", own_url()});
   }
@@ -62,7 +63,7 @@ class Ros2Test : public testing::Test {
   std::unique_ptr<Program> door_;
 };
 
-TEST_F(Ros2Test, AReaderOfFastDdsWithDefaultSettingsDrivesARoverByItsOdometry) {
+TEST_F(Ros2Test, AReaderOfFastDdsAtTheLoopbackInterfaceDrivesARoverByItsOdometry) {
   const ScratchFolder folder;
   write_file(folder.file("world.yaml"),
              "shoal: 1\nname: yard\nrun: {duration_s: forever, speed: 1}\n"

@@ -34,7 +34,7 @@ namespace {
 namespace dds = eprosima::fastdds::dds;
 using namespace std::chrono_literals;
 
-/// With the settings by which ROS 2 makes it, in an environment without variables of ROS 2.
+/// With the settings of loopback.xml.
 struct Participant {
   explicit Participant(int domain)
       : made(dds::DomainParticipantFactory::get_instance()->create_participant(static_cast<std::uint32_t>(domain),

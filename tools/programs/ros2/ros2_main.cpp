@@ -33,8 +33,7 @@ struct Arguments {
 
 void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--lcm-url", arguments.door.lcm_url, "LCM URL; overrides LCM_DEFAULT_URL")->type_name("URL");
-  app.add_option("--peer", arguments.peers, "another host with ROS 2, by name or address; may be repeated")
-      ->type_name("HOST");
+  app.add_option("--peer", arguments.peers, "another host with ROS 2, by name or address")->type_name("HOST");
   app.add_flag("--control", arguments.door.controls,
                "serve requests that pause, step, rewind and change the run, for all who reach this door");
   app.add_option("--run", arguments.door.run, "results folder of a run that needs its key; else SHOAL_RUN_KEY")
