@@ -10,13 +10,13 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
-#include <cstdio>
 #include <cstring>
 #include <optional>
 
 #include "bridges/base/file_descriptor.hpp"
 #include "bridges/bus/network_check.hpp"
 #include "bridges/lcm/lcm_url.hpp"
+#include "sim/base/number.hpp"
 
 namespace bridges {
 namespace {
@@ -123,11 +123,9 @@ Finding check_tcpq(const in_addr& peer, int port, milliseconds limit) {
     finding.text = where + " answers, but does not pass messages on";
     return finding;
   }
-  std::array<char, 32> time{};
-  std::snprintf(time.data(), time.size(), "%.2f ms",
-                std::chrono::duration<double, std::milli>(Clock::now() - begin).count());
+  const double time_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
   finding.verdict = Verdict::ok;
-  finding.text = where + " passes messages on, round trip " + time.data();
+  finding.text = where + " passes messages on, round trip " + sim::shortest_text(sim::rounded_to(time_ms, 2)) + " ms";
   return finding;
 }
 

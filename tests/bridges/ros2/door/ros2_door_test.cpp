@@ -44,7 +44,8 @@ std::vector<std::byte> next(DdsParticipant& participant, DdsParticipant::Endpoin
 bool act_as_node(const DdsNetwork& network) {
   DdsParticipant node(network, "enclave=/;");
   const auto clock = node.add_reader("rt/clock", "rosgraph_msgs::msg::dds_::Clock_", {1, false, ""});
-  CdrReader time(next(node, clock));
+  const auto now = next(node, clock);
+  CdrReader time(now);
   const bool is_time = time.get<std::int32_t>() == 1 && time.get<std::uint32_t>() == 500'000'000;
   node.remove(clock);
 
@@ -80,7 +81,8 @@ bool act_as_node(const DdsNetwork& network) {
   CdrWriter command(twist);
   for (const double value : {0.5, 0.0, 0.0, 0.0, 0.0, turn_radps}) command.put(value);
   node.write(velocity, twist);
-  return lcm_test::await([&] { return !node.has_readers(velocity); }) && is_time && is_node && is_refused;
+  const bool is_over = lcm_test::await([&] { return !node.has_readers(velocity); });
+  return is_time && is_node && is_refused && is_over;
 }
 
 /// A bus with a vehicle, as the simulator publishes it.
