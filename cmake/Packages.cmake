@@ -76,7 +76,7 @@ shoal_package(shoal-doc SECTION doc ALL COMPONENTS doc
   TEXT "Lessons, guides, models with their equations, the reference of all keys,
 devices, messages and metrics, and the interfaces for plugins and clients, as
 HTML.")
-if(SHOAL_PYTHON)
+if(SHOAL_PYTHON AND NOT SHOAL_SANITIZE)
   # The module is for the version of Python with which it was built.
   execute_process(COMMAND ${SHOAL_PYTHON_INTERPRETER} -c "import sys; print(f'python3 (>= 3.{sys.version_info.minor}), python3 (<< 3.{sys.version_info.minor + 1})', end='')"
                   OUTPUT_VARIABLE python_package COMMAND_ERROR_IS_FATAL ANY)

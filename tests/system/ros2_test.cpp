@@ -36,7 +36,7 @@ class Ros2Test : public testing::Test {
     all.insert(all.end(), arguments.begin(), arguments.end());
     return std::make_unique<Program>(all);
   }
-  /// Publishes messages at a rate until the judge has matched, and then a number of them with rising stamps.
+  /// Publishes messages until the judge has heard one, and then a number of them with rising stamps.
   template <class Message>
   void publish(Program& judge, const std::string& channel, Message message, int count,
                std::chrono::microseconds period) {
@@ -88,7 +88,7 @@ TEST_F(Ros2Test, NoMessageOfASensorAt1kHzIsLost) {
   constexpr int messages = 3000;
   const auto counter = judge({"imu", "/v/imu/imu", std::to_string(messages)});
   publish(*counter, "v.imu", shoal::imu_t{}, messages, 1ms);
-  EXPECT_EQ(counter->wait(), 0) << counter->output() << counter->errors();
+  EXPECT_EQ(counter->wait(), 0) << counter->output() << counter->errors() << door_->errors();
 }
 
 TEST_F(Ros2Test, NoImageOf640By480At30HzIsLost) {
@@ -102,7 +102,7 @@ TEST_F(Ros2Test, NoImageOf640By480At30HzIsLost) {
   image.data.assign(static_cast<std::size_t>(image.size), 100);
   const auto counter = judge({"image", "/v/camera/image", std::to_string(images)});
   publish(*counter, "v.camera", image, images, 33ms);
-  EXPECT_EQ(counter->wait(), 0) << counter->output() << counter->errors();
+  EXPECT_EQ(counter->wait(), 0) << counter->output() << counter->errors() << door_->errors();
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ int carry(const Arguments& arguments) {
   std::signal(SIGINT, on_signal);
   bridges::ros2::Ros2Door door(arguments.door);
   const bridges::DdsNetwork& network = arguments.door.network;
-  std::cerr << "shoal-ros2: node /shoal in domain " << network.domain << ", "
+  std::cerr << "shoal-ros2: node /shoal, domain " << network.domain << ", "
             << (network.peers.empty() ? "on this machine only"
                                       : "with " + std::to_string(network.peers.size()) + " other hosts")
             << ", bus " << door.lcm_url() << std::endl;
