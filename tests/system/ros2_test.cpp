@@ -36,8 +36,8 @@ class Ros2Test : public testing::Test {
     all.insert(all.end(), arguments.begin(), arguments.end());
     return std::make_unique<Program>(all);
   }
-  /// Publishes messages at a rate, the first with stamp 0 until the judge has heard one, then with rising stamps until
-  /// it has all that it counts: a busy machine may lose some.
+  /// Publishes messages at a rate, the first with stamp 0 until the judge has received one, then with rising stamps
+  /// until it has all that it counts: a busy machine may lose some.
   template <class Message>
   void publish(Program& judge, const std::string& channel, Message message, std::chrono::microseconds period) {
     bridges::LcmListener bus(own_url());
