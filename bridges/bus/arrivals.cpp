@@ -1,22 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/bus/arrivals.hpp"
 
-#include <sys/eventfd.h>
-#include <unistd.h>
-
 #include <algorithm>
-
-#include "bridges/base/bus_error.hpp"
 
 namespace bridges {
 
-Arrivals::Arrivals() : wake_fd_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-  if (wake_fd_ < 0) throw BusError("no file descriptor is available for the bus");
-  readable_.add(wake_fd_, nullptr);
-}
-
-Arrivals::~Arrivals() {
-  close(wake_fd_);
+Arrivals::Arrivals() {
+  readable_.add(wake_.fd(), nullptr);
 }
 
 void Arrivals::add(Port& port, int fd) {
@@ -36,8 +26,7 @@ void Arrivals::arrived() {
   count_.fetch_add(1);
   // A thread that falls asleep now reads the new count.
   if (!asleep_.load() || !asleep_.exchange(false)) return;
-  const std::uint64_t one = 1;
-  [[maybe_unused]] const auto written = write(wake_fd_, &one, sizeof one);
+  wake_.set();
 }
 
 bool Arrivals::wait(std::chrono::milliseconds timeout) {
@@ -65,8 +54,7 @@ bool Arrivals::wait(std::chrono::milliseconds timeout) {
 void Arrivals::receive(const PollSet::Readable& readable) {
   for (std::size_t i = 0; i < readable.count; ++i) {
     if (readable.tags[i] == nullptr) {
-      std::uint64_t times = 0;
-      [[maybe_unused]] const auto got = read(wake_fd_, &times, sizeof times);
+      wake_.clear();
     } else if (Port& port = *static_cast<Port*>(readable.tags[i]); !port.receive()) {
       remove(port);
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bridges/base/poll_set.hpp"
+#include "bridges/base/wake_event.hpp"
 
 namespace bridges {
 
@@ -29,7 +30,6 @@ class Arrivals {
 
   /// Throws BusError when no file descriptor is available.
   Arrivals();
-  ~Arrivals();
   Arrivals(const Arrivals&) = delete;
   Arrivals& operator=(const Arrivals&) = delete;
 
@@ -63,7 +63,7 @@ class Arrivals {
   void receive(const PollSet::Readable& readable);
 
   PollSet readable_;
-  int wake_fd_;
+  const WakeEvent wake_;
   std::vector<Watched> ports_;
   std::atomic<std::uint64_t> count_ = 0;
   std::uint64_t seen_ = 0;

@@ -84,7 +84,7 @@ ddsi_serdata* lend(const ddsi_serdata* sample, std::size_t offset, std::size_t s
   return ddsi_serdata_ref(sample);
 }
 
-/// What Cyclone DDS asks of samples.  There is no key, and no sample becomes an object.
+/// Functions that Cyclone DDS calls for samples, which have no key and stay encoded.
 constexpr ddsi_serdata_ops sample_operations() {
   ddsi_serdata_ops operations{};
   operations.eqkey = [](const ddsi_serdata*, const ddsi_serdata*) { return true; };

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "bridges/base/file_descriptor.hpp"
-#include "bridges/moos/wake_event.hpp"
+#include "bridges/base/wake_event.hpp"
 
 namespace bridges {
 

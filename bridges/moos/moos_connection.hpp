@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "bridges/base/file_descriptor.hpp"
+#include "bridges/base/wake_event.hpp"
 #include "bridges/moos/moos_session.hpp"
-#include "bridges/moos/wake_event.hpp"
 
 namespace bridges {
 

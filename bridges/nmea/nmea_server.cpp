@@ -3,7 +3,6 @@
 
 #include <netdb.h>
 #include <poll.h>
-#include <sys/eventfd.h>
 #include <sys/socket.h>
 
 #include <array>
@@ -103,8 +102,7 @@ struct NmeaServer::Client {
   std::string end = {};  ///< why it is to be closed; empty: it stays
 };
 
-NmeaServer::NmeaServer(Options options) : options_(std::move(options)), wake_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
-  if (wake_.number() < 0) throw BusError(std::string("NMEA: cannot make an event: ") + std::strerror(errno));
+NmeaServer::NmeaServer(Options options) : options_(std::move(options)) {
   if (options_.listen) {
     listener_ = open_socket(*options_.listen, SOCK_STREAM, "listen at", listen_at);
     port_ = port_of(listener_.number());
@@ -118,7 +116,7 @@ NmeaServer::~NmeaServer() {
     const std::lock_guard lock(mutex_);
     stop_ = true;
   }
-  eventfd_write(wake_.number(), 1);
+  wake_.set();
   thread_.join();
 }
 
@@ -128,7 +126,7 @@ void NmeaServer::send(const std::vector<std::string>& lines) {
     const std::lock_guard lock(mutex_);
     for (const std::string& line : lines) to_send_.push_back(line + "\r\n");
   }
-  eventfd_write(wake_.number(), 1);
+  wake_.set();
 }
 
 std::vector<NmeaServer::Line> NmeaServer::take_lines() {
@@ -138,8 +136,7 @@ std::vector<NmeaServer::Line> NmeaServer::take_lines() {
 
 void NmeaServer::run() {
   while (true) {
-    std::vector<pollfd> sockets{
-        {wake_.number(), POLLIN, 0}, {listener_.number(), POLLIN, 0}, {udp_.number(), POLLIN, 0}};
+    std::vector<pollfd> sockets{{wake_.fd(), POLLIN, 0}, {listener_.number(), POLLIN, 0}, {udp_.number(), POLLIN, 0}};
     for (const Client& client : clients_)
       sockets.push_back(
           {client.socket.number(), static_cast<short>(client.waiting.empty() ? POLLIN : POLLIN | POLLOUT), 0});
@@ -227,8 +224,7 @@ void NmeaServer::keep(const std::string& from, std::vector<sim::NmeaLines::Line>
 }
 
 void NmeaServer::distribute() {
-  eventfd_t ignored = 0;
-  eventfd_read(wake_.number(), &ignored);
+  wake_.clear();
   std::vector<std::string> lines;
   {
     const std::lock_guard lock(mutex_);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bridges/base/file_descriptor.hpp"
+#include "bridges/base/wake_event.hpp"
 #include "sim/nmea/nmea.hpp"
 
 namespace bridges::nmea {
@@ -70,7 +71,8 @@ class NmeaServer {
   void distribute();
 
   Options options_;
-  FileDescriptor listener_, udp_, wake_;
+  FileDescriptor listener_, udp_;
+  const WakeEvent wake_;
   std::uint16_t port_ = 0;
   std::mutex mutex_;                  // of the next three
   std::vector<std::string> to_send_;  // lines with their ends

@@ -10,13 +10,15 @@
 #include <string>
 #include <thread>
 
-#include "tests/bridges/dds/own_domain.hpp"
+#include "tests/bridges/dds/dds_test_support.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 
 namespace {
 
 using bridges::DdsNetwork;
 using bridges::DdsParticipant;
+using dds_test::next;
+using dds_test::own_network;
 
 constexpr const char* type = "std_msgs::msg::dds_::String_";
 
@@ -26,18 +28,6 @@ std::vector<std::byte> message(std::size_t size, std::uint8_t value) {
   bytes[0] = bytes[2] = bytes[3] = std::byte{0};
   bytes[1] = std::byte{1};
   return bytes;
-}
-
-DdsNetwork own_network() {
-  DdsNetwork network;
-  network.domain = dds_test::own_domain();
-  return network;
-}
-
-std::vector<std::byte> next(DdsParticipant& participant, DdsParticipant::Endpoint reader) {
-  while (const auto ready = participant.wait())
-    if (auto bytes = participant.take(reader)) return *bytes;
-  return {};
 }
 
 /// Sends back what comes, until a message of one byte comes.

@@ -13,7 +13,7 @@
 #include "shoal/sim_control_request_t.hpp"
 #include "shoal/twist_command_t.hpp"
 #include "shoal/utime_t.hpp"
-#include "tests/bridges/dds/own_domain.hpp"
+#include "tests/bridges/dds/dds_test_support.hpp"
 #include "tests/bridges/lcm/lcm_test_support.hpp"
 
 namespace {
@@ -24,21 +24,11 @@ using bridges::DdsParticipant;
 using bridges::ros2::CdrReader;
 using bridges::ros2::CdrWriter;
 using bridges::ros2::Ros2Door;
+using dds_test::next;
+using dds_test::own_network;
 using lcm_test::own_url;
 
 constexpr double turn_radps = 0.25;
-
-DdsNetwork own_network() {
-  DdsNetwork network;
-  network.domain = dds_test::own_domain();
-  return network;
-}
-
-std::vector<std::byte> next(DdsParticipant& participant, DdsParticipant::Endpoint reader) {
-  while (const auto ready = participant.wait())
-    if (auto bytes = participant.take(reader)) return *bytes;
-  return {};
-}
 
 /// A node of ROS 2: reads the clock, finds the node in the graph, asks for the state, and turns the rover.
 bool act_as_node(const DdsNetwork& network) {
