@@ -21,6 +21,8 @@ class RosbridgeView {
   RosbridgeView(bridges::WebServer& server, bool may_control);
 
   int clients() const { return protocol_->clients(); }
+  /// Offers the commands that the vehicles of the world take now; serve() keeps this up to date.
+  void show_commands(const sim::World& world);
   /// Passes a message on, published at this UTC.
   void message(std::int64_t utime, std::string_view channel, std::span<const std::byte> payload) {
     protocol_->message(utime, channel, payload);
@@ -35,8 +37,6 @@ class RosbridgeView {
 
  private:
   using Clock = std::chrono::steady_clock;
-
-  void show_commands(const sim::World& world);
 
   const std::shared_ptr<bridges::rosbridge::Protocol> protocol_;
   std::uint64_t subscriptions_ = 0;

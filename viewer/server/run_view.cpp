@@ -49,6 +49,8 @@ void RunView::start(const sim::World& world, std::optional<double> duration_s, c
   session_.server.retain("hello", bridges::json_text(hello));
   using bridges::foxglove::Control;
   session_.foxglove.introduce(world.config().name, version_, foxglove_control_ ? Control::run : Control::none);
+  // A client may command from its first message on.
+  if (session_.rosbridge) session_.rosbridge->show_commands(world);
 }
 
 void RunView::message(std::string_view channel, std::span<const std::byte> payload, sim::Time at) {
