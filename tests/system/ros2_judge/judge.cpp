@@ -35,7 +35,7 @@ namespace {
 namespace dds = eprosima::fastdds::dds;
 using namespace std::chrono_literals;
 
-/// With the settings of loopback.xml.
+/// With default settings, or those of FASTRTPS_DEFAULT_PROFILES_FILE.
 struct Participant {
   explicit Participant(int domain)
       : made(dds::DomainParticipantFactory::get_instance()->create_participant(static_cast<std::uint32_t>(domain),
