@@ -109,10 +109,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view package = "shoal_msgs";
+constexpr std::string_view package = "shoal_interfaces";
 constexpr std::string_view package_xml = R"(<?xml version="1.0"?>
 <package format="3">
-  <name>shoal_msgs</name>
+  <name>shoal_interfaces</name>
   <version>0.2.0</version>
   <description>Messages of the simulator Shoal</description>
   <maintainer email="shoal@example.org">Shoal</maintainer>
@@ -125,11 +125,11 @@ constexpr std::string_view package_xml = R"(<?xml version="1.0"?>
 </package>
 )";
 constexpr std::string_view cmake_lists = R"(cmake_minimum_required(VERSION 3.8)
-project(shoal_msgs)
+project(shoal_interfaces)
 find_package(ament_cmake REQUIRED)
 find_package(rosidl_default_generators REQUIRED)
 file(GLOB messages RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} msg/*.msg)
-rosidl_generate_interfaces(shoal_msgs ${messages})
+rosidl_generate_interfaces(shoal_interfaces ${messages})
 ament_package()
 )";
 
@@ -150,7 +150,7 @@ void write_message_package(const std::string& folder) {
   write(root / "package.xml", package_xml);
   write(root / "CMakeLists.txt", cmake_lists);
   for (const auto& [name, schema] : shoal::embedded_types().all()) {
-    const std::string type = short_type_name(name);  // shoal_msgs/Dvl
+    const std::string type = short_type_name(name);  // shoal_interfaces/Dvl
     if (!type.starts_with(std::string(package) + "/")) continue;
     const std::string text = schema_text(schema);
     write(root / "msg" / (type.substr(package.size() + 1) + ".msg"), text.substr(0, text.find(schema_separator)));

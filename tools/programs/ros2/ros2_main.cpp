@@ -40,7 +40,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->type_name("DIR");
   app.add_flag("--no-tf", arguments.no_tf, "leave /tf to your own localization: without the true poses");
   app.add_option("--write-package", arguments.package_folder,
-                 "only write the package shoal_msgs with Shoal's message types for colcon, to this folder")
+                 "only write the package shoal_interfaces with Shoal's message types for colcon, to this folder")
       ->type_name("DIR")
       ->check(command_line::not_empty());
   command_line::set_help_end(
