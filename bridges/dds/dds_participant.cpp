@@ -279,6 +279,10 @@ bool DdsParticipant::write(Endpoint writer, std::span<const std::byte> bytes) {
   return part != parts_.end() && dds_writecdr(writer, new_sample(*part->second.type, bytes)) == DDS_RETCODE_OK;
 }
 
+void DdsParticipant::flush(Endpoint writer) const {
+  dds_wait_for_acks(writer, DDS_SECS(1));
+}
+
 std::optional<std::vector<DdsParticipant::Endpoint>> DdsParticipant::wait() {
   std::array<dds_attach_t, 64> ready{};
   const dds_return_t count = dds_waitset_wait(waitset_, ready.data(), ready.size(), DDS_INFINITY);
