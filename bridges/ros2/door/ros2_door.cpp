@@ -199,7 +199,7 @@ void Ros2Door::learn(const Received& message) {
     if (reply.client != client_) return;
     const auto question = questions_.extract(reply.id);
     if (question.empty()) return services_.take_reply(reply, Clock::now());
-    // A vehicle that is not there any more is not described.
+    // A vehicle that was removed meanwhile is not described.
     const auto vehicle = vehicles_.find(question.mapped());
     if (reply.ok == 0 && vehicle != vehicles_.end()) vehicle->second.is_described = true;
   }

@@ -48,7 +48,7 @@ void Ros2Lockstep::stop() {
   client_.stop();
 }
 
-/// The world waits meanwhile, so that new vehicles are heard from the same step on in every run.
+/// The world waits meanwhile, so that new vehicles are received from the same step on in every run.
 bool Ros2Lockstep::subscribe_to_reports() {
   std::optional<std::set<std::string>> channels;
   while (!stopped_ && !(channels = links_.channels())) {

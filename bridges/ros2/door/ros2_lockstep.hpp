@@ -45,7 +45,7 @@ class Ros2Lockstep {
   Ros2Lockstep(const std::string& lcm_url, const Options& options, Links links);
 
   /// Takes part until the end of the run, or stop().  Throws BusError when the simulator does not answer, and when the
-  /// world goes on without the nodes.
+  /// world continues without the nodes.
   void run();
   /// Ends run(); may be called from another thread.
   void stop();

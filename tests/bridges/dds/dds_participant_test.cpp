@@ -88,7 +88,7 @@ TEST(DdsParticipantTest, ALaterReaderGetsTheLastMessageOfALatchedTopic) {
 }
 
 /// As a program of ROS 2 whose user has set nothing: at the interface that Cyclone DDS takes, with its own ports.
-/// Finds the writer of a topic, which it is told only after both have found each other.
+/// Finds the writer of a topic, which arrives only after both have found each other.
 bool find_with_default_settings(const std::string& topic) {
   unsetenv("CYCLONEDDS_URI");
   const auto domain = static_cast<dds_domainid_t>(dds_test::own_domain());
