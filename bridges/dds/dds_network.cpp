@@ -100,9 +100,11 @@ DdsNetwork dds_network(std::vector<std::string> peers, const Environment& enviro
 std::string cyclone_config(const DdsNetwork& network) {
   // Fast DDS and Cyclone DDS take the first free of these ports on a machine.
   constexpr int participants_of_a_machine = 32;
+  // Cyclone DDS searches peers by the first interface, and the loopback interface does not reach other machines.
+  const std::string first = network.peers.empty() ? "" : R"( priority="10")";
   std::string interfaces = R"(<NetworkInterface name="lo" multicast="true"/>)";
   if (!network.interface.empty())
-    interfaces += "<NetworkInterface name=\"" + network.interface + R"(" multicast="true"/>)";
+    interfaces += "<NetworkInterface name=\"" + network.interface + R"(" multicast="true")" + first + "/>";
   std::string peers;
   if (network.searches) peers = R"(<Peer address="127.0.0.1"/>)";
   for (const std::string& peer : network.peers) peers += "<Peer address=\"" + peer + "\"/>";

@@ -50,6 +50,8 @@ TEST(DdsNetworkTest, KnowsTheInterfaceThatProgramsWithDefaultSettingsAnnounce) {
   network.interface = "eth0";
   EXPECT_THAT(cyclone_config(network),
               HasSubstr(loopback + R"(<NetworkInterface name="eth0" multicast="true"/></Interfaces>)"));
+  network.peers = {"192.0.2.1"};  // is searched by the interface that comes first
+  EXPECT_THAT(cyclone_config(network), HasSubstr(R"(<NetworkInterface name="eth0" multicast="true" priority="10"/>)"));
   EXPECT_NE(network_of({}).interface, "lo");
 }
 
