@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/dds/dds_network.hpp"
 
+#include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <memory>
 #include <stdexcept>
 #include <string_view>
 
@@ -55,6 +60,21 @@ bool is_this_machine(std::string_view host) {
   return host == "localhost" || host.starts_with("127.") || host == "::1";
 }
 
+/// Returns the first interface with an address of IPv4 that other machines may know; empty: there is none.
+std::string first_interface() {
+  constexpr std::uint32_t link_local = 0xa9fe0000, first_two_bytes = 0xffff0000;
+  ifaddrs* all = nullptr;
+  if (getifaddrs(&all) != 0) return "";
+  const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> owner(all, freeifaddrs);
+  for (const ifaddrs* each = all; each != nullptr; each = each->ifa_next) {
+    if (each->ifa_addr == nullptr || each->ifa_addr->sa_family != AF_INET) continue;
+    const std::uint32_t address = ntohl(reinterpret_cast<const sockaddr_in*>(each->ifa_addr)->sin_addr.s_addr);
+    const bool is_up = (each->ifa_flags & IFF_UP) != 0 && (each->ifa_flags & IFF_LOOPBACK) == 0;
+    if (is_up && (address & first_two_bytes) != link_local) return each->ifa_name;
+  }
+  return "";
+}
+
 }  // namespace
 
 DdsNetwork dds_network(std::vector<std::string> peers, const Environment& environment) {
@@ -73,23 +93,30 @@ DdsNetwork dds_network(std::vector<std::string> peers, const Environment& enviro
   if (!local.empty() && local != "0" && local != "1") refuse("ROS_LOCALHOST_ONLY", "0 or 1", local);
   if (local == "1" && !network.peers.empty())
     throw std::invalid_argument("ROS_LOCALHOST_ONLY=1 contradicts the peer '" + network.peers.front() + "'");
+  network.interface = first_interface();
   return network;
 }
 
 std::string cyclone_config(const DdsNetwork& network) {
   // Fast DDS and Cyclone DDS take the first free of these ports on a machine.
   constexpr int participants_of_a_machine = 32;
-  const bool leaves = !network.peers.empty();
+  // Cyclone DDS searches peers by the first interface, and the loopback interface does not reach other machines.
+  const std::string first = network.peers.empty() ? "" : R"( priority="10")";
   std::string interfaces = R"(<NetworkInterface name="lo" multicast="true"/>)";
-  if (leaves) interfaces += R"(<NetworkInterface autodetermine="true" multicast="false"/>)";
+  if (!network.interface.empty())
+    interfaces += "<NetworkInterface name=\"" + network.interface + R"(" multicast="true")" + first + "/>";
   std::string peers;
   if (network.searches) peers = R"(<Peer address="127.0.0.1"/>)";
   for (const std::string& peer : network.peers) peers += "<Peer address=\"" + peer + "\"/>";
-  // A writer holds the last ten messages for a reader that lost some, images too.
+  // Only the search is by multicast: others would send theirs to their own interface.  It is repeated each second, for
+  // a program at another interface does not search here.  A writer holds the last ten messages for a reader that lost
+  // some, images too.
   return "<CycloneDDS><Domain id=\"any\"><General><Interfaces>" + interfaces + "</Interfaces><AllowMulticast>" +
-         (network.searches ? "true" : "false") +
-         "</AllowMulticast><MaxMessageSize>65500B</MaxMessageSize><FragmentSize>16000B</FragmentSize></General>"
-         "<Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>" +
+         (network.searches ? "spdp" : "false") +
+         "</AllowMulticast><MulticastRecvNetworkInterfaceAddresses>127.0.0.1</MulticastRecvNetworkInterfaceAddresses>"
+         "<MaxMessageSize>65500B</MaxMessageSize><FragmentSize>16000B</FragmentSize></General>"
+         "<Discovery><SPDPInterval>1s</SPDPInterval><ParticipantIndex>auto</"
+         "ParticipantIndex><MaxAutoParticipantIndex>" +
          std::to_string(participants_of_a_machine) + "</MaxAutoParticipantIndex><Peers>" + peers +
          "</Peers></Discovery><Internal><SocketReceiveBufferSize min=\"default\" max=\"4MB\"/>"
          "<Watermarks><WhcHigh>64MB</WhcHigh></Watermarks></Internal></Domain></CycloneDDS>";

@@ -5,6 +5,8 @@
 #include <dds/ddsi/ddsi_serdata.h>
 #include <dds/ddsi/q_radmin.h>
 #include <dds/ddsrt/log.h>
+#include <net/if.h>
+#include <netinet/in.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -156,12 +158,20 @@ std::set<int> open_sockets() {
   return sockets;
 }
 
-/// Keeps those at the loopback interface that are not in `before`: Cyclone DDS receives at all interfaces, also when
-/// its configuration names one.
-void keep_at_loopback(const std::set<int>& before) {
-  for (const int fd : open_sockets())
-    if (!before.contains(fd) && setsockopt(fd, SOL_SOCKET, SO_BINDTODEVICE, "lo", sizeof "lo") != 0)
-      throw BusError("DDS: cannot bind a socket to the loopback interface: " + std::string(std::strerror(errno)));
+/// Keeps the multicast of sockets that are not in `before` at the loopback interface, and without peers all that they
+/// send and receive: Cyclone DDS receives at all interfaces, also when its configuration names one.  What the interface
+/// lo receives comes from this machine, whatever its addresses are.
+void keep_at_loopback(const std::set<int>& before, bool has_peers) {
+  ip_mreqn loopback{};
+  loopback.imr_ifindex = static_cast<int>(if_nametoindex("lo"));
+  const int joined_only = 0;
+  for (const int fd : open_sockets()) {
+    if (before.contains(fd)) continue;
+    if (setsockopt(fd, IPPROTO_IP, IP_MULTICAST_IF, &loopback, sizeof loopback) != 0 ||
+        setsockopt(fd, IPPROTO_IP, IP_MULTICAST_ALL, &joined_only, sizeof joined_only) != 0 ||
+        (!has_peers && setsockopt(fd, SOL_SOCKET, SO_BINDTODEVICE, "lo", sizeof "lo") != 0))
+      throw BusError("DDS: cannot keep a socket at the loopback interface: " + std::string(std::strerror(errno)));
+  }
 }
 
 /// Prints the first messages of Cyclone DDS; a peer that cannot be reached makes one again and again.
@@ -203,10 +213,10 @@ DdsParticipant::DdsParticipant(const DdsNetwork& network, const std::string& use
   domain_ =
       checked(dds_create_domain(domain, cyclone_config(network).c_str()), "domain " + std::to_string(network.domain));
   try {
+    keep_at_loopback(before, !network.peers.empty());  // before anything is sent
     const Qos qos{dds_create_qos(), dds_delete_qos};
     dds_qset_userdata(qos.get(), user_data.data(), user_data.size());
     participant_ = checked(dds_create_participant(domain, qos.get(), nullptr), "a participant");
-    if (network.peers.empty()) keep_at_loopback(before);
     waitset_ = checked(dds_create_waitset(participant_), "a waitset");
     stop_ = checked(dds_create_guardcondition(participant_), "a condition");
     dds_waitset_attach(waitset_, stop_, 0);
@@ -267,6 +277,10 @@ bool DdsParticipant::has_readers(Endpoint writer) const {
 bool DdsParticipant::write(Endpoint writer, std::span<const std::byte> bytes) {
   const auto part = parts_.find(writer);
   return part != parts_.end() && dds_writecdr(writer, new_sample(*part->second.type, bytes)) == DDS_RETCODE_OK;
+}
+
+void DdsParticipant::flush(Endpoint writer) const {
+  dds_wait_for_acks(writer, DDS_SECS(1));
 }
 
 std::optional<std::vector<DdsParticipant::Endpoint>> DdsParticipant::wait() {

@@ -47,6 +47,8 @@ class DdsParticipant {
   /// Writes a message, which begins with the four bytes of its representation; waits at most 0.1 s for slow readers.
   /// Returns false when DDS refused it.
   bool write(Endpoint writer, std::span<const std::byte> bytes);
+  /// Waits, at most 1 s, until the readers have what was written.
+  void flush(Endpoint writer) const;
   /// Waits for messages, and returns the readers that may have some; nothing after stop().
   std::optional<std::vector<Endpoint>> wait();
   /// Returns the next message of a reader, padded with at most three bytes.

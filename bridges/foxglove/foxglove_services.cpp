@@ -20,13 +20,13 @@ using Json = nlohmann::json;
 using Argument = Service::Argument;
 
 constexpr std::array all_services{
-    Service{1, "/shoal/pause", "shoal_msgs/srv/Pause", "pause", Argument::none, ""},
-    Service{2, "/shoal/resume", "shoal_msgs/srv/Resume", "resume", Argument::none, ""},
-    Service{3, "/shoal/step", "shoal_msgs/srv/Step", "step", Argument::whole_number, "steps"},
-    Service{4, "/shoal/speed", "shoal_msgs/srv/Speed", "speed", Argument::number, "speed"},
-    Service{5, "/shoal/rewind", "shoal_msgs/srv/Rewind", "rewind", Argument::number, "seconds"},
-    Service{6, "/shoal/spawn", "shoal_msgs/srv/Spawn", "spawn", Argument::text, "request"},
-    Service{7, "/shoal/do", "shoal_msgs/srv/Do", "do", Argument::text, "action"},
+    Service{1, "/shoal/pause", "shoal_interfaces/srv/Pause", "pause", Argument::none, ""},
+    Service{2, "/shoal/resume", "shoal_interfaces/srv/Resume", "resume", Argument::none, ""},
+    Service{3, "/shoal/step", "shoal_interfaces/srv/Step", "step", Argument::whole_number, "steps"},
+    Service{4, "/shoal/speed", "shoal_interfaces/srv/Speed", "speed", Argument::number, "speed"},
+    Service{5, "/shoal/rewind", "shoal_interfaces/srv/Rewind", "rewind", Argument::number, "seconds"},
+    Service{6, "/shoal/spawn", "shoal_interfaces/srv/Spawn", "spawn", Argument::text, "request"},
+    Service{7, "/shoal/do", "shoal_interfaces/srv/Do", "do", Argument::text, "action"},
 };
 
 constexpr std::size_t max_request_bytes = 65'536;

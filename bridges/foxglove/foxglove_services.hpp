@@ -14,7 +14,7 @@ struct Service {
 
   std::uint32_t id = 0;
   std::string_view name;     ///< such as `/shoal/rewind`
-  std::string_view type;     ///< such as `shoal_msgs/srv/Rewind`
+  std::string_view type;     ///< such as `shoal_interfaces/srv/Rewind`
   std::string_view command;  ///< of `sim.control`
   Argument argument = Argument::none;
   std::string_view member;  ///< of the request: name of the argument

@@ -63,7 +63,7 @@ Split split(std::string_view lcm_type) {
   const std::size_t dot = lcm_type.rfind('.');
   const std::string_view package = dot == std::string_view::npos ? "lcm" : lcm_type.substr(0, dot);
   const std::string_view name = dot == std::string_view::npos ? lcm_type : lcm_type.substr(dot + 1);
-  return {field_name(package) + "_msgs", camel_case(name)};
+  return {field_name(package) + "_interfaces", camel_case(name)};
 }
 
 }  // namespace

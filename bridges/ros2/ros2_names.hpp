@@ -9,9 +9,9 @@
 
 namespace bridges::ros2 {
 
-/// Name of the ROS 2 type of an LCM type, without `msg`: `shoal.gps_data_t` is `shoal_msgs/GpsData`.
+/// Name of the ROS 2 type of an LCM type, without `msg`: `shoal.gps_data_t` is `shoal_interfaces/GpsData`.
 std::string short_type_name(std::string_view lcm_type);
-/// Full name of the ROS 2 type of an LCM type: `shoal.gps_data_t` is `shoal_msgs/msg/GpsData`.
+/// Full name of the ROS 2 type of an LCM type: `shoal.gps_data_t` is `shoal_interfaces/msg/GpsData`.
 std::string type_name(std::string_view lcm_type);
 /// Name of a ROS 2 type in DDS: `sensor_msgs/msg/Imu` is `sensor_msgs::msg::dds_::Imu_`.
 std::string dds_type_name(std::string_view ros_type);

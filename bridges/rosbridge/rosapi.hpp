@@ -16,7 +16,7 @@ namespace bridges::rosbridge {
 /// Topic on which a run takes commands.
 struct CommandTopic {
   struct Type {
-    std::string name;        ///< such as `shoal_msgs/msg/HelmCommand`
+    std::string name;        ///< such as `shoal_interfaces/msg/HelmCommand`
     std::string lcm_type;    ///< of the command that is made of it
     bool unchanged = false;  ///< a missing number means "as before", not 0
   };

@@ -87,7 +87,7 @@ export function checkConventions(topics) {
   const parents = treeOf(topics);
   let examined = 0;
   for (const [name, { schema, messages }] of topics) {
-    if (schema === undefined || schema.name.startsWith("shoal_msgs/") || name === "/rosout") continue;
+    if (schema === undefined || schema.name.startsWith("shoal_interfaces/") || name === "/rosout") continue;
     for (const { message } of messages) {
       const frame = header(message);
       try {

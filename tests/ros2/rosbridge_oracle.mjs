@@ -87,7 +87,7 @@ async function checkTopics() {
     topic(ros, "/rover1/cmd_vel", "geometry_msgs/Twist").publish({ linear: { x: 1 } });
     await until(() => ros.statuses.some(({ msg }) => /control is off/.test(msg)), "refusal");
     check(ros.statuses.every(({ msg }) => /control is off/.test(msg)), `statuses: ${JSON.stringify(ros.statuses[0])}`);
-    const pause = new roslib.Service({ ros, name: "/shoal/pause", serviceType: "shoal_msgs/Pause" });
+    const pause = new roslib.Service({ ros, name: "/shoal/pause", serviceType: "shoal_interfaces/Pause" });
     const refused = await promised((ok) => pause.callService(new roslib.ServiceRequest({}), () => ok(""), ok));
     check(/control is off/.test(refused), `pause: ${refused}`);
     ros.close();
@@ -111,7 +111,7 @@ async function checkControl() {
   await until(() => odometry.last.pose.pose.position.x > 0.1, "a way ahead");
   clearInterval(drives);
   // The own type of the device
-  const command = topic(ros, "/rover1/drive/cmd", "shoal_msgs/msg/TwistCommand");
+  const command = topic(ros, "/rover1/drive/cmd", "shoal_interfaces/msg/TwistCommand");
   const backs = setInterval(() => command.publish(new roslib.Message({ forward_mps: -0.5 })), 100);
   const farthest = odometry.last.pose.pose.position.x;
   await until(() => odometry.last.pose.pose.position.x < farthest - 0.1, "a way back");
@@ -125,7 +125,7 @@ async function checkControl() {
   const refused = await call("/shoal/do", { action: "nothing: {" });
   check(!refused.success && refused.message.length > 0, "do");
   // Throttled: in 2 s of simulated time at most 1 + 2 messages of each 1000 ms
-  const slow = subscribe(ros, "/sim/state", "shoal_msgs/SimState", { throttle_rate: 3_600_000 });
+  const slow = subscribe(ros, "/sim/state", "shoal_interfaces/SimState", { throttle_rate: 3_600_000 });
   check((await call("/shoal/resume", {})).success, "resume");
   const before = odometry.all.length;
   await until(() => odometry.all.length > before + 20, "odometry goes on");

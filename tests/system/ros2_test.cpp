@@ -27,9 +27,25 @@ class Ros2Test : public testing::Test {
   void SetUp() override {
     if (!std::filesystem::exists(built("ros2_judge")))
       GTEST_SKIP() << "Fast DDS is not installed: nothing judges shoal-ros2";
-    setenv("FASTRTPS_DEFAULT_PROFILES_FILE", source("tests/system/ros2_judge/loopback.xml").c_str(), 1);
+    unsetenv("FASTRTPS_DEFAULT_PROFILES_FILE");  // the settings of a user who has set nothing
     setenv("ROS_DOMAIN_ID", std::to_string(dds_test::own_domain()).c_str(), 1);
-    door_ = std::make_unique<Program>(std::vector<std::string>{built("shoal-ros2"), "--lcm-url", own_url()});
+    write_file(folder_.file("probe.yaml"), "include: " + source("vehicles/rover.yaml") +
+                                               "\nshoal: 1\nvehicle: probe\n"
+                                               "devices: [{name: imu, type: imu, preset: adis16470, rate_hz: 100}]\n");
+  }
+  void start_door(const std::vector<std::string>& options = {}) {
+    std::vector<std::string> all{built("shoal-ros2"), "--lcm-url", own_url()};
+    all.insert(all.end(), options.begin(), options.end());
+    door_ = std::make_unique<Program>(all);
+  }
+  /// A run of a rover; `run`: keys of `run:`.
+  std::unique_ptr<Program> run(const std::string& run, const std::vector<std::string>& options = {}) const {
+    write_file(folder_.file("world.yaml"), "shoal: 1\nname: yard\nrun: {" + run +
+                                               "}\nobjects: [{name: ground, fixed: true, parts: [{shape: plane}]}]\n"
+                                               "vehicles: [{name: rover1, file: probe.yaml}]\n");
+    std::vector<std::string> all{built("shoal"), "run", folder_.file("world.yaml"), "--lcm-url", own_url()};
+    all.insert(all.end(), options.begin(), options.end());
+    return std::make_unique<Program>(all);
   }
   std::unique_ptr<Program> judge(const std::vector<std::string>& arguments) const {
     std::vector<std::string> all{built("ros2_judge"), std::to_string(dds_test::own_domain())};
@@ -48,32 +64,46 @@ class Ros2Test : public testing::Test {
       std::this_thread::sleep_until(next += period);
     }
   }
+  void drive_a_rover() {
+    start_door();
+    const auto world = run("duration_s: forever, speed: 1");
+    const auto driver = judge({"drive", "rover1"});
+    EXPECT_EQ(driver->wait(), 0) << driver->output() << driver->errors() << door_->errors() << world->errors();
+    // The clock is that of the world: its epoch, 2026-01-01, is 1767225600 s after 1970.
+    EXPECT_THAT(driver->output(), HasSubstr("frame rover1/imu, child frame rover1, gravity 10 m/s2, clock 17672256"));
+    world->send_signal(SIGINT);
+    EXPECT_EQ(world->wait(), 130);
+    door_->send_signal(SIGTERM);
+    EXPECT_EQ(door_->wait(), 143);
+    EXPECT_THAT(door_->errors(), HasSubstr("on this machine only"));
+  }
+  /// A run with a node in lockstep, to its end; returns its hash.
+  std::string run_in_lockstep() {
+    start_door({"--lockstep", "pilot", "--period-s", "0.05"});
+    const auto pilot = judge({"lockstep", "pilot", "rover1"});
+    const auto world = run("duration_s: 3, speed: max", {"--await", "shoal-ros2"});
+    EXPECT_EQ(world->wait(), 0) << world->errors() << door_->errors() << pilot->errors();
+    EXPECT_EQ(pilot->wait(), 0) << pilot->output() << pilot->errors() << door_->errors();
+    EXPECT_EQ(door_->wait(), 0) << door_->errors();
+    EXPECT_THAT(pilot->output(), testing::AllOf(HasSubstr(" ticks, x "), testing::Not(HasSubstr("x 0 m"))));
+    return run_hash_in({0, world->output(), world->errors()}) + pilot->output();
+  }
 
+  ScratchFolder folder_;
   std::unique_ptr<Program> door_;
 };
 
-TEST_F(Ros2Test, AReaderOfFastDdsAtTheLoopbackInterfaceDrivesARoverByItsOdometry) {
-  const ScratchFolder folder;
-  write_file(folder.file("world.yaml"),
-             "shoal: 1\nname: yard\nrun: {duration_s: forever, speed: 1}\n"
-             "objects: [{name: ground, fixed: true, parts: [{shape: plane}]}]\n"
-             "vehicles: [{name: rover1, file: probe.yaml}]\n");
-  write_file(folder.file("probe.yaml"), "include: " + source("vehicles/rover.yaml") +
-                                            "\nshoal: 1\nvehicle: probe\n"
-                                            "devices: [{name: imu, type: imu, preset: adis16470, rate_hz: 100}]\n");
-  Program run({built("shoal"), "run", folder.file("world.yaml"), "--lcm-url", own_url()});
-  const auto driver = judge({"drive", "rover1"});
-  EXPECT_EQ(driver->wait(), 0) << driver->output() << driver->errors() << door_->errors() << run.errors();
-  // The clock is that of the world: its epoch, 2026-01-01, is 1767225600 s after 1970.
-  EXPECT_THAT(driver->output(), HasSubstr("frame rover1/imu, child frame rover1, gravity 10 m/s2, clock 17672256"));
-  run.send_signal(SIGINT);
-  EXPECT_EQ(run.wait(), 130);
-  door_->send_signal(SIGTERM);
-  EXPECT_EQ(door_->wait(), 143);
-  EXPECT_THAT(door_->errors(), HasSubstr("on this machine only"));
+TEST_F(Ros2Test, AReaderOfFastDdsWithDefaultSettingsDrivesARoverByItsOdometry) {
+  drive_a_rover();
+}
+
+TEST_F(Ros2Test, AReaderOfFastDdsAtTheLoopbackInterfaceDrivesARover) {
+  setenv("FASTRTPS_DEFAULT_PROFILES_FILE", source("tests/system/ros2_judge/loopback.xml").c_str(), 1);
+  drive_a_rover();
 }
 
 TEST_F(Ros2Test, MessagesOfASensorAt1kHzArriveInOrder) {
+  start_door();
   const auto counter = judge({"imu", "/v/imu/imu", "3000"});
   publish(*counter, "v.imu", shoal::imu_t{}, 1ms);
   EXPECT_EQ(counter->wait(), 0) << counter->output() << counter->errors() << door_->errors();
@@ -87,9 +117,23 @@ TEST_F(Ros2Test, ImagesOf640By480At30HzArriveInOrder) {
   image.pixelformat = 859981650;  // RGB, 8 bits each
   image.size = image.row_stride * image.height;
   image.data.assign(static_cast<std::size_t>(image.size), 100);
+  start_door();
   const auto counter = judge({"image", "/v/camera/image", "60"});
   publish(*counter, "v.camera", image, 33ms);
   EXPECT_EQ(counter->wait(), 0) << counter->output() << counter->errors() << door_->errors();
+}
+
+TEST_F(Ros2Test, RunsWithANodeInLockstepAreEqual) {
+  EXPECT_EQ(run_in_lockstep(), run_in_lockstep());
+}
+
+TEST_F(Ros2Test, AClientInTheFormOfRmwCycloneddsStepsTheRun) {
+  start_door({"--control"});
+  const auto world = run("duration_s: forever", {"--paused"});
+  const auto client = judge({"step", "10"});
+  EXPECT_EQ(client->wait(), 0) << client->output() << client->errors() << door_->errors();
+  EXPECT_EQ(client->output(), "client 11, call 22, result 1 ''\n");
+  EXPECT_THAT(control({"where"}).output, HasSubstr("step 10, "));
 }
 
 }  // namespace

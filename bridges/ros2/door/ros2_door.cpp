@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <cmath>
+#include <exception>
 #include <iostream>
 
 #include "bridges/lockstep_client/wait_warning.hpp"
@@ -22,6 +25,9 @@ using namespace std::chrono_literals;
 
 /// Most topics out, topics in and vehicles of a bus, on which any program may publish.
 constexpr std::size_t max_topics = 5000;
+
+/// Messages that are kept of a topic, and of the commands to one, in lockstep.
+constexpr int most_in_a_tick = 1000;
 
 /// In place of a writer that cannot be made.
 constexpr std::int32_t no_endpoint = -1;
@@ -67,6 +73,7 @@ Ros2Door::Ros2Door(const Options& options)
   graph_ = participant_.add_writer("ros_discovery_info", "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_",
                                    {1, true, ""});
   add_services();
+  if (!options.lockstep.nodes.empty()) add_lockstep();
   lcm_.listen_to_all();
   receiver_ = std::thread([this] { receive(); });
 }
@@ -77,6 +84,31 @@ Ros2Door::~Ros2Door() {
 }
 
 void Ros2Door::run(const std::function<bool()>& stops) {
+  std::exception_ptr error;
+  std::atomic<bool> is_over = false;
+  std::thread lockstep;
+  if (lockstep_)
+    lockstep = std::thread([&] {
+      try {
+        lockstep_->run();
+      } catch (...) {
+        error = std::current_exception();
+      }
+      is_over = true;
+    });
+  try {
+    carry([&] { return is_over || stops(); });
+  } catch (...) {
+    error = std::current_exception();
+  }
+  if (lockstep_) {
+    lockstep_->stop();
+    lockstep.join();
+  }
+  if (error) std::rethrow_exception(error);
+}
+
+void Ros2Door::carry(const std::function<bool()>& stops) {
   WaitWarning no_bus("shoal-ros2: waiting for messages of a run at " + lcm_.url());
   for (bool heard = false; !stops();) {
     const auto message = lcm_.next(100ms);
@@ -86,6 +118,32 @@ void Ros2Door::run(const std::function<bool()>& stops) {
     if (message) take_message(*message);
     look_after(Clock::now());
   }
+}
+
+void Ros2Door::add_lockstep() {
+  const DdsQos qos{1, true, user_data(Tick::type, Tick::schema())};
+  const std::string type = dds_type_name(Tick::type);
+  ticks_ = participant_.add_writer("rt/shoal/tick", type, qos);
+  tick_answers_ = participant_.add_reader("rt/shoal/tick_done", type, {most_in_a_tick, false, qos.user_data});
+  Ros2Lockstep::Links links;
+  links.pass = [this](const std::string& channel, std::span<const std::byte> payload) {
+    const std::scoped_lock lock(mutex_);
+    is_in_tick_ = true;
+    publish({channel, {payload.begin(), payload.end()}, 0});
+    is_in_tick_ = false;
+  };
+  links.channels = [this] {
+    const std::scoped_lock lock(mutex_);
+    return report_channels();
+  };
+  links.tell = [this](const Tick& tick) {
+    const std::scoped_lock lock(mutex_);
+    utime_ = tick.utime;
+    participant_.write(ticks_, encode(tick));
+    if (tick.last) participant_.flush(ticks_);
+  };
+  links.warn = [](const std::string& sentence) { std::cerr << "shoal-ros2: " << sentence << std::endl; };
+  lockstep_.emplace(options_.lcm_url, options_.lockstep, std::move(links));
 }
 
 void Ros2Door::add_services() {
@@ -101,6 +159,13 @@ void Ros2Door::add_services() {
 }
 
 void Ros2Door::take_message(const Received& message) {
+  const auto& ticked = Ros2Lockstep::world_channels;
+  const bool is_ticked =
+      !message.channel.starts_with("sim.") || std::find(ticked.begin(), ticked.end(), message.channel) != ticked.end();
+  if (!lockstep_ || !is_ticked) publish(message);
+}
+
+void Ros2Door::publish(const Received& message) {
   try {
     learn(message);
   } catch (const shoal::MessageError&) {
@@ -120,6 +185,7 @@ void Ros2Door::learn(const Received& message) {
     auto state = shoal::decode<shoal::sim_state_t>(message.payload, Finite::any);
     for (const std::string& name : state.vehicle)
       if (vehicles_.size() < max_topics) vehicles_.try_emplace(name);
+    present_ = state.vehicle;
     services_.know(std::move(state));
   } else if (message.channel == "sim.vehicle") {
     learn_vehicle(shoal::decode<shoal::sim_vehicle_t>(message.payload, Finite::any));
@@ -130,7 +196,12 @@ void Ros2Door::learn(const Received& message) {
     for (auto& [name, vehicle] : vehicles_) vehicle.is_described = false;
   } else if (message.channel == "sim.control.reply") {
     const auto reply = shoal::decode<shoal::sim_control_reply_t>(message.payload, Finite::any);
-    if (reply.client == client_) services_.take_reply(reply, Clock::now());
+    if (reply.client != client_) return;
+    const auto question = questions_.extract(reply.id);
+    if (question.empty()) return services_.take_reply(reply, Clock::now());
+    // A vehicle that was removed meanwhile is not described.
+    const auto vehicle = vehicles_.find(question.mapped());
+    if (reply.ok == 0 && vehicle != vehicles_.end()) vehicle->second.is_described = true;
   }
 }
 
@@ -143,6 +214,12 @@ void Ros2Door::learn_vehicle(const shoal::sim_vehicle_t& description) {
     return;
   }
   vehicle.is_described = true;
+  vehicle.reports.clear();
+  for (std::size_t i = 0; i < description.report_channel.size(); ++i) {
+    if (description.report_channel[i].empty() || rates_hz_.size() >= max_topics) continue;
+    vehicle.reports.insert(description.report_channel[i]);
+    rates_hz_[description.report_channel[i]] = description.rate_hz[i];
+  }
   if (vehicle.described == commands_of(description)) return;
   forget(vehicle);
   vehicle.described = commands_of(description);
@@ -150,8 +227,9 @@ void Ros2Door::learn_vehicle(const shoal::sim_vehicle_t& description) {
   for (CommandTopic& topic : command_topics(description)) {
     if (commands_.size() >= max_topics) break;
     try {
-      const Endpoint reader = participant_.add_reader(dds_topic(topic.name), dds_type_name(topic.type),
-                                                      {10, false, user_data(topic.type, topic.schema)});
+      const Endpoint reader =
+          participant_.add_reader(dds_topic(topic.name), dds_type_name(topic.type),
+                                  {lockstep_ ? most_in_a_tick : 10, false, user_data(topic.type, topic.schema)});
       vehicle.readers.push_back(reader);
       commands_.emplace(reader, std::move(topic));
     } catch (const BusError& error) {
@@ -171,6 +249,18 @@ void Ros2Door::forget(Vehicle& vehicle) {
   graph_changed_ = true;
 }
 
+/// Returns the channels of the vehicles in the last state; none while one of them is not described.
+std::optional<std::set<std::string>> Ros2Door::report_channels() {
+  std::set<std::string> channels;
+  for (const std::string& name : present_) {
+    const auto vehicle = vehicles_.find(name);
+    if (vehicle == vehicles_.end()) continue;  // it was removed meanwhile
+    if (!vehicle->second.is_described) return std::nullopt;
+    channels.insert(vehicle->second.reports.begin(), vehicle->second.reports.end());
+  }
+  return channels;
+}
+
 /// Ends calls that wait too long, asks again what was not answered, and tells changes of the graph.
 void Ros2Door::look_after(Clock::time_point now) {
   if (now < next_look_) return;
@@ -181,7 +271,7 @@ void Ros2Door::look_after(Clock::time_point now) {
   next_question_ = now + 1s;
   int questions = 200;
   for (const auto& [name, vehicle] : vehicles_)
-    if (!vehicle.is_described && questions-- > 0) ask("describe", 0, name);
+    if (!vehicle.is_described && questions-- > 0) questions_.insert_or_assign(ask("describe", 0, name), name);
 }
 
 /// Publishes rmw_dds_common/ParticipantEntitiesInfo, by which ROS 2 knows the endpoints of a node.
@@ -222,10 +312,8 @@ bool Ros2Door::wants(const Topic& topic) {
   writers_.resize(std::max(writers_.size(), topic.number + 1));
   Endpoint& writer = writers_[topic.number];
   if (writer == 0) {
-    const int depth = topic.latched ? 1 : 10;
     try {
-      writer = participant_.add_writer(dds_topic(topic.name), dds_type_name(topic.type),
-                                       {depth, topic.latched, user_data(topic.type, topic.schema)});
+      writer = participant_.add_writer(dds_topic(topic.name), dds_type_name(topic.type), qos_of(topic));
       graph_changed_ = true;
     } catch (const BusError& error) {
       writer = no_endpoint;
@@ -233,11 +321,23 @@ bool Ros2Door::wants(const Topic& topic) {
     }
   }
   if (writer == no_endpoint) return false;
-  return topic.latched || participant_.has_readers(writer);
+  return topic.latched || is_in_tick_ || participant_.has_readers(writer);
+}
+
+/// In lockstep a topic keeps the messages of a tick: those who subscribe late get them too, and so all runs are equal.
+DdsQos Ros2Door::qos_of(const Topic& topic) const {
+  DdsQos qos{topic.latched ? 1 : 10, topic.latched || is_in_tick_, user_data(topic.type, topic.schema)};
+  if (topic.latched || !is_in_tick_) return qos;
+  const auto rate = rates_hz_.find(topic.lcm_channel);
+  const double in_a_tick = rate == rates_hz_.end() ? 0 : rate->second * options_.lockstep.period_s;
+  qos.depth = in_a_tick > 0 ? static_cast<int>(std::min<double>(most_in_a_tick, 10 + 2 * std::ceil(in_a_tick)))
+                            : most_in_a_tick;
+  return qos;
 }
 
 bool Ros2Door::take(const Topic& topic, std::span<const std::byte> bytes) {
   ++counts_.published;
+  if (is_in_tick_ && !topic.latched) lockstep_->count(topic.name);
   if (!participant_.write(writers_[topic.number], bytes)) ++counts_.late;
   return true;
 }
@@ -271,15 +371,35 @@ void Ros2Door::deliver(Endpoint reader, std::span<const std::byte> cdr) {
   const auto service = service_of_.find(reader);
   ++counts_.commands;
   try {
-    if (command != commands_.end())
-      lcm_.publish(command->second.channel, command->second.convert(cdr, utime_));
+    if (reader == tick_answers_ && lockstep_)
+      lockstep_->take(decode_tick(cdr));
+    else if (command != commands_.end())
+      deliver(command->second, cdr);
     else if (service != service_of_.end())
       services_.call(service->second, cdr, Clock::now());
   } catch (const shoal::MessageError& error) {
     ++counts_.refused;
-    warn_once(command != commands_.end() ? command->second.name : SimServices::services()[service->second].name,
+    warn_once(command != commands_.end()     ? command->second.name
+              : service != service_of_.end() ? SimServices::services()[service->second].name
+                                             : "/shoal/tick_done",
               std::string("a message is ignored: ") + error.what());
   }
+}
+
+/// Passes a command on, in lockstep at the end of the tick: one that is refused counts as well.
+void Ros2Door::deliver(const CommandTopic& command, std::span<const std::byte> cdr) {
+  if (!lockstep_) {
+    lcm_.publish(command.channel, command.convert(cdr, utime_));
+    return;
+  }
+  std::optional<TickExchange::Command> converted;
+  try {
+    converted = {command.channel, command.convert(cdr, utime_)};
+  } catch (const shoal::MessageError&) {
+    lockstep_->add(command.name, std::nullopt);
+    throw;
+  }
+  lockstep_->add(command.name, std::move(converted));
 }
 
 }  // namespace bridges::ros2

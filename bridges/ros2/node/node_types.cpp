@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "bridges/base/bus_error.hpp"
+#include "bridges/ros2/node/tick_exchange.hpp"
 #include "bridges/ros2/ros2_names.hpp"
 #include "bridges/ros2/ros2_schema.hpp"
 
@@ -109,27 +110,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view package = "shoal_msgs";
+constexpr std::string_view package = "shoal_interfaces";
 constexpr std::string_view package_xml = R"(<?xml version="1.0"?>
 <package format="3">
-  <name>shoal_msgs</name>
+  <name>shoal_interfaces</name>
   <version>0.2.0</version>
   <description>Messages of the simulator Shoal</description>
   <maintainer email="shoal@example.org">Shoal</maintainer>
   <license>BSD-3-Clause</license>
   <buildtool_depend>ament_cmake</buildtool_depend>
   <buildtool_depend>rosidl_default_generators</buildtool_depend>
+  <depend>builtin_interfaces</depend>
   <exec_depend>rosidl_default_runtime</exec_depend>
   <member_of_group>rosidl_interface_packages</member_of_group>
   <export><build_type>ament_cmake</build_type></export>
 </package>
 )";
 constexpr std::string_view cmake_lists = R"(cmake_minimum_required(VERSION 3.8)
-project(shoal_msgs)
+project(shoal_interfaces)
 find_package(ament_cmake REQUIRED)
+find_package(builtin_interfaces REQUIRED)
 find_package(rosidl_default_generators REQUIRED)
 file(GLOB messages RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} msg/*.msg)
-rosidl_generate_interfaces(shoal_msgs ${messages})
+rosidl_generate_interfaces(shoal_interfaces ${messages} DEPENDENCIES builtin_interfaces)
 ament_package()
 )";
 
@@ -149,8 +152,9 @@ void write_message_package(const std::string& folder) {
   if (error) throw BusError("cannot make " + root.string() + ": " + error.message());
   write(root / "package.xml", package_xml);
   write(root / "CMakeLists.txt", cmake_lists);
+  write(root / "msg/Tick.msg", Tick::definition);
   for (const auto& [name, schema] : shoal::embedded_types().all()) {
-    const std::string type = short_type_name(name);  // shoal_msgs/Dvl
+    const std::string type = short_type_name(name);  // shoal_interfaces/Dvl
     if (!type.starts_with(std::string(package) + "/")) continue;
     const std::string text = schema_text(schema);
     write(root / "msg" / (type.substr(package.size() + 1) + ".msg"), text.substr(0, text.find(schema_separator)));

@@ -17,9 +17,9 @@ namespace bridges::ros2 {
 /// `schema`: as schema_text() and standard_schema_text() return it.
 std::string type_hash(std::string_view type, std::string_view schema);
 
-/// Writes `folder`/shoal_msgs, a package of ROS 2 with Shoal's message types (DVL, USBL, modem, commands, ...), for
-/// `colcon build`: package.xml, CMakeLists.txt, and a file `.msg` for each type, with the comments of its `.lcm` file.
-/// A message of such a type has the CDR of to_cdr().
+/// Writes `folder`/shoal_interfaces, a package of ROS 2 with Shoal's message types (DVL, USBL, modem, commands, ...),
+/// for `colcon build`: package.xml, CMakeLists.txt, and a file `.msg` for each type, with the comments of its `.lcm`
+/// file.  A message of such a type has the CDR of to_cdr().
 ///
 /// Throws BusError if a file cannot be written, or if the package exists: it may have changes of a user.
 void write_message_package(const std::string& folder);

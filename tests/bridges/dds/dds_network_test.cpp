@@ -39,9 +39,20 @@ TEST(DdsNetworkTest, WithoutOptionsItIsDomainZeroOfThisMachine) {
   EXPECT_TRUE(network.searches);
   EXPECT_THAT(network.peers, IsEmpty());
   const std::string config = cyclone_config(network);
-  EXPECT_THAT(config, HasSubstr(R"(<NetworkInterface name="lo" multicast="true"/></Interfaces>)"));
+  EXPECT_THAT(config, HasSubstr("<AllowMulticast>spdp</AllowMulticast>"));
   EXPECT_THAT(config, HasSubstr(R"(<Peer address="127.0.0.1"/>)"));
-  EXPECT_THAT(config, Not(HasSubstr("autodetermine")));
+}
+
+TEST(DdsNetworkTest, KnowsTheInterfaceThatProgramsWithDefaultSettingsAnnounce) {
+  DdsNetwork network;
+  const std::string loopback = R"(<Interfaces><NetworkInterface name="lo" multicast="true"/>)";
+  EXPECT_THAT(cyclone_config(network), HasSubstr(loopback + "</Interfaces>"));
+  network.interface = "eth0";
+  EXPECT_THAT(cyclone_config(network),
+              HasSubstr(loopback + R"(<NetworkInterface name="eth0" multicast="true"/></Interfaces>)"));
+  network.peers = {"192.0.2.1"};  // is searched by the interface that comes first
+  EXPECT_THAT(cyclone_config(network), HasSubstr(R"(<NetworkInterface name="eth0" multicast="true" priority="10"/>)"));
+  EXPECT_NE(network_of({}).interface, "lo");
 }
 
 TEST(DdsNetworkTest, ReadsTheVariablesOfRos2) {
@@ -51,13 +62,13 @@ TEST(DdsNetworkTest, ReadsTheVariablesOfRos2) {
   EXPECT_TRUE(network_of({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET"}}).peers.empty());
   const DdsNetwork off = network_of({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF"}}, {"192.0.2.1"});
   EXPECT_FALSE(off.searches);
-  EXPECT_THAT(cyclone_config(off), Not(HasSubstr("127.0.0.1")));
+  EXPECT_THAT(cyclone_config(off), Not(HasSubstr(R"(<Peer address="127.0.0.1"/>)")));
+  EXPECT_THAT(cyclone_config(off), HasSubstr("<AllowMulticast>false</AllowMulticast>"));
 }
 
-TEST(DdsNetworkTest, OnlyAPeerElsewhereOpensAnotherInterface) {
-  EXPECT_THAT(cyclone_config(network_of({}, {"localhost", "127.0.1.1"})), Not(HasSubstr("autodetermine")));
-  EXPECT_THAT(cyclone_config(network_of({}, {"192.0.2.1"})),
-              HasSubstr(R"(<NetworkInterface autodetermine="true" multicast="false"/>)"));
+TEST(DdsNetworkTest, NamesOfThisMachineAreNoPeers) {
+  EXPECT_THAT(network_of({}, {"localhost", "127.0.1.1"}).peers, IsEmpty());
+  EXPECT_THAT(cyclone_config(network_of({}, {"192.0.2.1"})), HasSubstr(R"(<Peer address="192.0.2.1"/></Peers>)"));
 }
 
 TEST(DdsNetworkTest, RefusesWhatIsNotAValue) {

@@ -2,6 +2,7 @@
 #include "bridges/dds/dds_participant.hpp"
 
 #include <arpa/inet.h>
+#include <dds/dds.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
@@ -83,6 +84,35 @@ TEST(DdsParticipantTest, ALaterReaderGetsTheLastMessageOfALatchedTopic) {
   EXPECT_FALSE(participant.has_readers(writer));
   EXPECT_TRUE(participant.write(writer, message(8, 6)));
   EXPECT_TRUE(participant.write(writer, message(8, 7)));
+  EXPECT_TRUE(peer.wait());
+}
+
+/// As a program of ROS 2 whose user has set nothing: at the interface that Cyclone DDS takes, with its own ports.
+/// Finds the writer of a topic, which arrives only after both have found each other.
+bool find_with_default_settings(const std::string& topic) {
+  unsetenv("CYCLONEDDS_URI");
+  const auto domain = static_cast<dds_domainid_t>(dds_test::own_domain());
+  const dds_entity_t participant = dds_create_participant(domain, nullptr, nullptr);
+  const dds_entity_t writers = dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr);
+  const bool found = lcm_test::await([&] {
+    void* sample = nullptr;
+    dds_sample_info_t info{};
+    bool is_it = false;
+    while (dds_take(writers, &sample, &info, 1, 1) == 1) {
+      is_it = is_it || (info.valid_data && static_cast<dds_builtintopic_endpoint_t*>(sample)->topic_name == topic);
+      dds_return_loan(writers, &sample, 1);
+    }
+    return is_it;
+  });
+  dds_delete(participant);
+  return found;
+}
+
+TEST(DdsParticipantTest, AParticipantWithDefaultSettingsFindsIt) {
+  const DdsNetwork network = own_network();
+  dds_test::Peer peer([] { return find_with_default_settings("rt/out"); });
+  DdsParticipant participant(network, "");
+  participant.add_writer("rt/out", type, {});
   EXPECT_TRUE(peer.wait());
 }
 

@@ -9,9 +9,9 @@
 
 namespace dds_test {
 
-/// Settings for the loopback interface, in the domain of this process.
+/// Settings for this machine, in the domain of this process.
 inline bridges::DdsNetwork own_network() {
-  bridges::DdsNetwork network;
+  bridges::DdsNetwork network = bridges::dds_network({}, [](const char*) -> const char* { return nullptr; });
   network.domain = own_domain();
   return network;
 }

@@ -144,7 +144,7 @@ TEST_F(FoxgloveProtocolTest, IntroducesItselfThenAdvertisesWhatIsThere) {
   const Json& channels = viewer.texts[1]["channels"];
   ASSERT_EQ(channels.size(), 2u);
   EXPECT_EQ(channels[0]["topic"], "/rover1/gps");
-  EXPECT_EQ(channels[0]["schemaName"], "shoal_msgs/msg/GpsData");
+  EXPECT_EQ(channels[0]["schemaName"], "shoal_interfaces/msg/GpsData");
   EXPECT_EQ(channels[1]["topic"], "/rover1/gps/fix");
   EXPECT_EQ(channels[1]["encoding"], "cdr");
   EXPECT_EQ(channels[1]["schemaEncoding"], "ros2msg");

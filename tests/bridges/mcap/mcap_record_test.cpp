@@ -63,9 +63,9 @@ TEST(McapRecord, EachChannelHasItsTopicAndAStandardOne) {
   }
   EXPECT_TRUE(record.finish());
   EXPECT_THAT(topics_of(folder.file("a.mcap")),
-              UnorderedElementsAre(Pair("/rover1/gps", Pair("shoal_msgs/msg/GpsData", 3)),
+              UnorderedElementsAre(Pair("/rover1/gps", Pair("shoal_interfaces/msg/GpsData", 3)),
                                    Pair("/rover1/gps/fix", Pair("sensor_msgs/msg/NavSatFix", 3)),
-                                   Pair("/sim/clock", Pair("shoal_msgs/msg/Utime", 3)),
+                                   Pair("/sim/clock", Pair("shoal_interfaces/msg/Utime", 3)),
                                    Pair("/clock", Pair("rosgraph_msgs/msg/Clock", 3))));
 }
 
@@ -93,7 +93,7 @@ TEST(McapRecord, KeepsMessagesThatItCannotDecode) {
   EXPECT_THAT(record.problems(), ElementsAre(HasSubstr("recorded as bytes on /a/bytes"), HasSubstr("too short")));
   const auto topics = topics_of(folder.file("a.mcap"));
   EXPECT_THAT(topics.at("/a/bytes"), Pair("lcm", 2));
-  EXPECT_THAT(topics.at("/a"), Pair("shoal_msgs/msg/GpsData", 1));
+  EXPECT_THAT(topics.at("/a"), Pair("shoal_interfaces/msg/GpsData", 1));
 }
 
 TEST(McapRecord, NoTwoChannelsHaveOneTopic) {
@@ -106,7 +106,7 @@ TEST(McapRecord, NoTwoChannelsHaveOneTopic) {
   const auto topics = topics_of(folder.file("a.mcap"));
   EXPECT_EQ(topics.at("/a/b").second, 2);
   EXPECT_EQ(topics.at("/a/b_2").second, 1);
-  EXPECT_EQ(topics.at("/a/b_3").first, "shoal_msgs/msg/GpsData");
+  EXPECT_EQ(topics.at("/a/b_3").first, "shoal_interfaces/msg/GpsData");
 }
 
 TEST(McapRecord, AttachesTheWorldOnceAndDescribesEachBranch) {

@@ -18,10 +18,10 @@ shoal::MessageTypes types_of(const std::string& lcm) {
 }
 
 TEST(Ros2Names, TypesAreInCamelCaseInAPackageOfMessages) {
-  EXPECT_EQ(type_name("shoal.gps_data_t"), "shoal_msgs/msg/GpsData");
-  EXPECT_EQ(short_type_name("shoal.sim_info_t"), "shoal_msgs/SimInfo");
-  EXPECT_EQ(type_name("my.Own.odd_type"), "my_own_msgs/msg/OddType");
-  EXPECT_EQ(type_name("alone_t"), "lcm_msgs/msg/Alone");
+  EXPECT_EQ(type_name("shoal.gps_data_t"), "shoal_interfaces/msg/GpsData");
+  EXPECT_EQ(short_type_name("shoal.sim_info_t"), "shoal_interfaces/SimInfo");
+  EXPECT_EQ(type_name("my.Own.odd_type"), "my_own_interfaces/msg/OddType");
+  EXPECT_EQ(type_name("alone_t"), "lcm_interfaces/msg/Alone");
 }
 
 TEST(Ros2Names, MembersAreInLowerCaseAndUnique) {

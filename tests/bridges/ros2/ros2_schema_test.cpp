@@ -22,8 +22,9 @@ TEST(Ros2Schema, HasTheUsedTypesBehindTheType) {
   const auto types = types_of(
       "package p; struct b_t { double x; /// in m\n } "
       "struct a_t { int32_t n; b_t list[n]; boolean flag[2][3]; string names[n]; byte raw; }");
-  EXPECT_EQ(schema_text(*types.find("p.a_t")), "int32 n\np_msgs/B[] list\nbool[6] flag\nstring[] names\nuint8 raw\n" +
-                                                   schema_separator + "MSG: p_msgs/B\nfloat64 x  # in m\n");
+  EXPECT_EQ(schema_text(*types.find("p.a_t")),
+            "int32 n\np_interfaces/B[] list\nbool[6] flag\nstring[] names\nuint8 raw\n" + schema_separator +
+                "MSG: p_interfaces/B\nfloat64 x  # in m\n");
 }
 
 TEST(Ros2Schema, ATypeWithoutMembersHasOne) {

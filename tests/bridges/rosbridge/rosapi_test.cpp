@@ -29,7 +29,7 @@ class RosapiTest : public testing::Test {
       {0, "/a", "cdr", "std_msgs/msg/Header", "string frame_id\n", "a", "", false},
       {1, "/b/bytes", "lcm", "", "", "b", "", false}};
   std::map<std::string, CommandTopic, std::less<>> commands_{
-      {"/r/cmd", {"/r/cmd", {{"shoal_msgs/msg/HelmCommand", "shoal.helm_command_t", true}}, "r", "r.cmd"}}};
+      {"/r/cmd", {"/r/cmd", {{"shoal_interfaces/msg/HelmCommand", "shoal.helm_command_t", true}}, "r", "r.cmd"}}};
   Graph graph_{topics_, commands_, true, -5};
 };
 
@@ -42,18 +42,19 @@ TEST_F(RosapiTest, TopicsThatHaveNoTypeAreNone) {
 
 TEST_F(RosapiTest, ATypeIsThatOfATopicOrACommandOrAStandardOne) {
   EXPECT_EQ(schema_of(graph_, "std_msgs/Header"), "string frame_id\n");
-  EXPECT_THAT(schema_of(graph_, "shoal_msgs/HelmCommand"), testing::HasSubstr("float64 heading_rad"));
+  EXPECT_THAT(schema_of(graph_, "shoal_interfaces/HelmCommand"), testing::HasSubstr("float64 heading_rad"));
   EXPECT_THAT(schema_of(graph_, "geometry_msgs/msg/Twist"), testing::StartsWith("geometry_msgs/Vector3 linear\n"));
   EXPECT_EQ(error_of("/rosapi/message_details", {{"type", "a/B"}}), "there is no type 'a/B'");
 }
 
 TEST_F(RosapiTest, ServicesOfTheRunAreListedWithControlOnly) {
   const auto of_run = [](const Graph& graph) {
-    return answer_rosapi(graph, "/rosapi/services_for_type", {{"type", "shoal_msgs/srv/Pause"}})["services"];
+    return answer_rosapi(graph, "/rosapi/services_for_type", {{"type", "shoal_interfaces/srv/Pause"}})["services"];
   };
   EXPECT_EQ(of_run(graph_), Json::array({"/shoal/pause"}));
   EXPECT_EQ(of_run({topics_, commands_, false, 0}), Json::array());
-  EXPECT_EQ(answer_rosapi(graph_, "/rosapi/service_type", {{"service", "/shoal/step"}})["type"], "shoal_msgs/srv/Step");
+  EXPECT_EQ(answer_rosapi(graph_, "/rosapi/service_type", {{"service", "/shoal/step"}})["type"],
+            "shoal_interfaces/srv/Step");
 }
 
 TEST_F(RosapiTest, ATimeBeforeTheFirstMessageIsZero) {

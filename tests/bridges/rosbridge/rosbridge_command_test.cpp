@@ -89,7 +89,7 @@ TEST(RosbridgeCommand, WhatAHelmIsNotToldStaysAsItIs) {
 
 TEST(RosbridgeCommand, AnArrayNeedsItsLength) {
   const auto all = topics();
-  const auto& type = command_type_of(topic(all, "/auv_1/autopilot/cmd"), "shoal_msgs/WaypointsCommand");
+  const auto& type = command_type_of(topic(all, "/auv_1/autopilot/cmd"), "shoal_interfaces/WaypointsCommand");
   const Json two{{"n", 2}, {"x_m", {1, 2}}, {"y_m", {3, 4}}, {"depth_m", {5, nullptr}}};
   EXPECT_THAT(command<shoal::waypoints_command_t>(type, two).y_m, testing::ElementsAre(3, 4));
   Json one = two;
@@ -98,7 +98,7 @@ TEST(RosbridgeCommand, AnArrayNeedsItsLength) {
 }
 
 TEST(RosbridgeCommand, NothingThatIsNotFiniteReachesADevice) {
-  const CommandTopic::Type type{"shoal_msgs/msg/ThrustRudderCommand", "shoal.thrust_rudder_command_t"};
+  const CommandTopic::Type type{"shoal_interfaces/msg/ThrustRudderCommand", "shoal.thrust_rudder_command_t"};
   EXPECT_EQ(command<shoal::thrust_rudder_command_t>(type, {{"thrust", 1}}).rudder, 0);
   EXPECT_THAT(error_of(type, {{"thrust", nullptr}}), HasSubstr("thrust"));
 }
@@ -110,7 +110,8 @@ TEST(RosbridgeCommand, AnotherTypeIsRefusedWithThoseThatFit) {
     FAIL();
   } catch (const bridges::WebError& error) {
     EXPECT_STREQ(error.what(),
-                 "/auv_1/drive/cmd: its type must be shoal_msgs/msg/WheelSpeedsCommand, shoal_msgs/msg/TwistCommand, "
+                 "/auv_1/drive/cmd: its type must be shoal_interfaces/msg/WheelSpeedsCommand, "
+                 "shoal_interfaces/msg/TwistCommand, "
                  "got std_msgs/String");
   }
 }

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <string>
 
+#include "bridges/ros2/node/tick_exchange.hpp"
 #include "bridges/ros2/ros2_schema.hpp"
 
 // write_ros2_types FOLDER TYPE...: writes types such as sensor_msgs/msg/Imu, and those that they use, as
@@ -25,7 +26,8 @@ void write(const std::filesystem::path& root, const std::string& name, const std
 int main(int argc, char** argv) {
   for (int i = 2; i < argc; ++i) {
     std::string name = argv[i];
-    std::istringstream lines(bridges::ros2::standard_schema_text(name));
+    using bridges::ros2::Tick;
+    std::istringstream lines(name == Tick::type ? Tick::schema() : bridges::ros2::standard_schema_text(name));
     name.erase(name.find("/msg/"), 4);
     std::string definition;
     for (std::string line; std::getline(lines, line);) {

@@ -142,7 +142,7 @@ TEST(CommandTopicsTest, APathInTheWorldBecomesARouteWithDepths) {
 
 TEST(CommandTopicsTest, AMessageOfShoalsTypesIsTakenAsItIsWithPaddingToo) {
   const auto modem =
-      topic(vehicle("modem", "shoal.modem_send_t"), "/v/modem/cmd/modem_send", "shoal_msgs/msg/ModemSend");
+      topic(vehicle("modem", "shoal.modem_send_t"), "/v/modem/cmd/modem_send", "shoal_interfaces/msg/ModemSend");
   shoal::modem_send_t send{};
   send.utime = 7;
   send.destination = "w";
@@ -157,7 +157,7 @@ TEST(CommandTopicsTest, AMessageOfShoalsTypesIsTakenAsItIsWithPaddingToo) {
   EXPECT_THAT(received.data, ElementsAre(1, 2, 3));
   // A set point that is not given is NaN.
   const auto helm =
-      topic(vehicle("pilot", "shoal.helm_command_t"), "/v/pilot/cmd/helm_command", "shoal_msgs/msg/HelmCommand");
+      topic(vehicle("pilot", "shoal.helm_command_t"), "/v/pilot/cmd/helm_command", "shoal_interfaces/msg/HelmCommand");
   shoal::helm_command_t command{};
   command.depth_m = not_a_number;
   ASSERT_FALSE(to_cdr(shoal::schema_of<shoal::helm_command_t>(), shoal::encode(command), bytes));

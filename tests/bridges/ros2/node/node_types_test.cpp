@@ -27,17 +27,17 @@ std::string text_of(const std::filesystem::path& path) {
 TEST(MessagePackage, HasAFileForEachTypeAndIsNotOverwritten) {
   const test_support::ScratchFolder folder;
   bridges::ros2::write_message_package(folder.file("src"));
-  const std::filesystem::path root = folder.file("src/shoal_msgs");
+  const std::filesystem::path root = folder.file("src/shoal_interfaces");
   EXPECT_THAT(text_of(root / "msg/Dvl.msg"), AllOf(HasSubstr("int64 utime"), HasSubstr("float64[3] velocity_mps")));
-  EXPECT_THAT(text_of(root / "msg/Image.msg"), HasSubstr("shoal_msgs/ImageMetadata"));
+  EXPECT_THAT(text_of(root / "msg/Image.msg"), HasSubstr("shoal_interfaces/ImageMetadata"));
   EXPECT_THAT(text_of(root / "msg/Image.msg"), testing::Not(HasSubstr("MSG:")));
-  EXPECT_THAT(text_of(root / "package.xml"), HasSubstr("<name>shoal_msgs</name>"));
+  EXPECT_THAT(text_of(root / "package.xml"), HasSubstr("<name>shoal_interfaces</name>"));
   std::size_t types = 0;
   for (const auto& [name, schema] : shoal::embedded_types().all()) types += name.starts_with("shoal.") ? 1 : 0;
   const std::filesystem::directory_iterator files(root / "msg");
-  EXPECT_EQ(static_cast<std::size_t>(std::distance(begin(files), end(files))), types);
+  EXPECT_EQ(static_cast<std::size_t>(std::distance(begin(files), end(files))), types + 1);  // and Tick
   EXPECT_THAT([&] { bridges::ros2::write_message_package(folder.file("src")); },
-              testing::ThrowsMessage<bridges::BusError>(HasSubstr("shoal_msgs exists; remove it first")));
+              testing::ThrowsMessage<bridges::BusError>(HasSubstr("shoal_interfaces exists; remove it first")));
 }
 
 // The hashes that nodes of ROS 2 Jazzy publish.
