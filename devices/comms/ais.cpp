@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "devices/common/radio_horizon.hpp"
 #include "shoal/ais_t.hpp"
 #include "shoal/message_codec.hpp"
 #include "sim/world/world.hpp"
@@ -26,11 +27,6 @@ double clockwise_from_north_rad(double yaw_rad) {
   const double turn = 2 * std::numbers::pi;
   const double angle_rad = std::numbers::pi / 2 - yaw_rad;
   return angle_rad - turn * std::floor(angle_rad / turn);
-}
-
-/// Distance to the horizon of radio waves, whose rays bend as on an earth of 4/3 of its radius (ITU-R P.310).
-double radio_horizon_m(double height_m) {
-  return std::sqrt(2 * 4.0 / 3 * 6.371e6 * std::max(height_m, 0.0));
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ namespace {
 /// Much of anything is slow for a good reason.
 bool is_small(const sim::WorldConfig& world) {
   constexpr int max_entities = 12;
-  static const std::set<std::string> rays{"camera",    "lidar",     "lidar3d", "imaging_sonar",
-                                          "side_scan", "multibeam", "sonar",   "range_beacon"};
+  static const std::set<std::string> rays{"camera",    "lidar", "lidar3d",      "imaging_sonar", "side_scan",
+                                          "multibeam", "sonar", "range_beacon", "marine_radar"};
   int entities = static_cast<int>(world.vehicles.size());
   for (const sim::ObjectConfig& object : world.objects) {
     if (object.any_part([](const sim::PartConfig& part) { return part.terrain; })) return false;

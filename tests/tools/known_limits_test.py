@@ -126,6 +126,10 @@ class Formats(unittest.TestCase):
             self.assertLacks({"properties": self.device(sonar)}, "side_lobe", "multipath", "echoes", "doppler", "profile",
                              "propagation")
 
+    def test_the_radar_has_one_straight_way(self):
+        self.assertLacks({"properties": self.device("marine_radar")}, "side_lobe", "multipath", "lobing", "rain", "doppler",
+                         "correlation", "material")
+
     def test_cameras_see_no_water(self):
         self.assertLacks({"properties": self.device("camera")}, "water", "jerlov", "scatter", "attenuation", "gpu")
         self.assertLacks([self.world["light"], self.world["materials"]], "reflection", "refract", "soft", "water")
