@@ -21,10 +21,11 @@ class RosbridgeView {
   RosbridgeView(bridges::WebServer& server, bool may_control);
 
   int clients() const { return protocol_->clients(); }
-  /// Passes a message on, published at this UTC.
+  /// Passes a message on, published at this UTC, with the next flush().
   void message(std::int64_t utime, std::string_view channel, std::span<const std::byte> payload) {
     protocol_->message(utime, channel, payload);
   }
+  void flush() { protocol_->flush(); }
   /// Returns true once after there were new subscriptions.
   bool take_subscribed();
   /// Sends what was held back and is due, at most some thirty times per second of wall time.
