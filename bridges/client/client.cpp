@@ -140,6 +140,10 @@ void Client::Connection::follow_clock(std::int64_t new_period_us) {
   due_utime.reset();
 }
 
+void Client::handle_in_batches(std::function<void()> after_batch) {
+  connection_->lcm.take_in_batches(std::move(after_batch));
+}
+
 std::optional<std::int64_t> Client::next_tick() {
   // After silence another client may still arrive.
   if (connection_->end != End::none && connection_->end != End::silence) return std::nullopt;

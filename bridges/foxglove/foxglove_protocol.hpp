@@ -66,8 +66,10 @@ class Protocol final : public WebProtocol {
   std::uint64_t subscriptions() const { return subscriptions_.load(); }
   /// Introduces the server to later clients, who wait for it.
   void introduce(ServerInfo info);
-  /// Passes a message on, published at this UTC, us since 1970.
+  /// Passes a message on, published at this UTC, us since 1970, with the next flush().
   void message(std::int64_t utime, std::string_view channel, std::span<const std::byte> payload);
+  /// Sends the messages so far.  Call it after each step.
+  void flush() { exchange_.flush(); }
   /// Sets the time that clients show.
   void show_time(std::int64_t utime);
   /// Announces that the time was set, so that later messages may be older than those before.

@@ -67,6 +67,12 @@ void LcmListener::listen_to_all() {
   connection_.subscribe_to_all(keep, this);
 }
 
+void LcmListener::take_in_batches(std::function<void()> before_wait) {
+  raise(stop_);
+  if (thread_.joinable()) thread_.join();
+  before_wait_ = std::move(before_wait);
+}
+
 std::optional<Received> LcmListener::take() {
   const std::lock_guard lock(mutex_);
   waiting_ = arrived_.empty();
@@ -83,6 +89,7 @@ std::optional<Received> LcmListener::next(std::chrono::milliseconds timeout) {
   std::chrono::milliseconds left = timeout;
   while (true) {
     if (auto message = take()) return message;
+    if (before_wait_) before_wait_();
     // Wait for the network or the background thread.
     const PollSet::Readable readable = readable_.wait(left);
     if (readable.count == 0) break;

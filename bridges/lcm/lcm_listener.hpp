@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -38,6 +39,9 @@ class LcmListener {
   void listen(const std::string& channel);
   /// Subscribes to all channels except that of the self test of LCM.
   void listen_to_all();
+  /// Calls `before_wait` in next() whenever all that have arrived were returned.  Ends the background thread, which
+  /// costs a program wake-ups that takes messages at once.
+  void take_in_batches(std::function<void()> before_wait);
   /// Waits for and returns the next message; none on time-out or signal.
   std::optional<Received> next(std::chrono::milliseconds timeout);
   /// Publishes a message immediately; returns false when LCM refused it.
@@ -55,6 +59,7 @@ class LcmListener {
   std::deque<Received> arrived_;
   std::size_t arrived_bytes_ = 0;
   bool waiting_ = false;
+  std::function<void()> before_wait_;
   LcmConnection connection_;
   std::mutex receive_mutex_;
   FileDescriptor wake_, stop_;

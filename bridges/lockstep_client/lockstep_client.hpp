@@ -89,6 +89,8 @@ class LockstepClient {
   /// Follows a run without lockstep: handle_message() requests to be listed in the last tick of the run, again for each
   /// run that is followed.
   void follow();
+  /// As LcmListener::take_in_batches(), for a program without lockstep.
+  void take_in_batches(std::function<void()> before_wait) { lcm_.take_in_batches(std::move(before_wait)); }
   /// Waits for the next message and calls its handlers, for a program without lockstep.  Returns false when stop() was
   /// called, after `silence_limit`, and after follow() at the end of the run.
   bool handle_message();

@@ -128,8 +128,7 @@ void MoosConnection::serve() {
       const std::lock_guard lock(mutex_);
       if (!session_->output().empty()) polled[0].events |= POLLOUT;
     }
-    // Four times a second, which is often enough for keep_alive().
-    poll(polled.data(), polled.size(), 250);
+    poll(polled.data(), polled.size(), 1000);  // for keep_alive()
     if (polled[1].revents != 0) wake_.clear();
     std::vector<MoosMessage> received;
     if ((polled[0].revents & ~POLLOUT) != 0) received = read();

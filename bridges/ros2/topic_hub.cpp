@@ -2,6 +2,7 @@
 #include "bridges/ros2/topic_hub.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace bridges::ros2 {
 namespace {
@@ -16,6 +17,16 @@ bool is_kept(std::string_view channel) {
 bool is_examined(std::uint64_t seen) {
   constexpr std::uint64_t first = 20, every = 50;
   return seen < first || seen % every == 0;
+}
+
+/// Returns the same text for kept messages of which the last is enough: a scene for another, an asset for itself, whose
+/// hash follows after its fingerprint and time.
+std::string replacement_key(const ChannelMessage& message) {
+  constexpr std::size_t hash_at = 16, hash_bytes = 24;
+  std::string key = message.channel;
+  if (key == "sim.asset" && message.payload.size() > hash_at + hash_bytes)
+    key.append(reinterpret_cast<const char*>(message.payload.data()) + hash_at, hash_bytes);
+  return key;
 }
 
 }  // namespace
@@ -54,7 +65,36 @@ Need TopicHub::need(std::string_view channel, std::span<const std::byte> payload
   return examined ? Need::examined : Need::none;
 }
 
+void TopicHub::add(TopicReader& reader) {
+  encode_set_aside();
+  readers_.push_back(&reader);
+}
+
 void TopicHub::encode(ChannelMessage& message) {
+  readers_.empty() ? set_aside(message) : encode_now(message);
+}
+
+/// Sets a message aside for the first reader.
+void TopicHub::set_aside(ChannelMessage& message) {
+  constexpr std::size_t max_bytes = std::size_t{64} << 20;
+  const auto bytes_of = [](const ChannelMessage& each) { return each.payload.size() + sizeof each; };
+  const std::size_t end = set_aside_.size();
+  const std::size_t place =
+      is_kept(message.channel) ? replaceable_.emplace(replacement_key(message), end).first->second : end;
+  if (place < end) set_aside_bytes_ -= bytes_of(set_aside_[place]);
+  if (place == end) set_aside_.emplace_back();
+  set_aside_bytes_ += bytes_of(message);
+  set_aside_[place] = std::move(message);
+  if (set_aside_bytes_ > max_bytes) encode_set_aside();
+}
+
+void TopicHub::encode_set_aside() {
+  for (ChannelMessage& message : std::exchange(set_aside_, {})) encode_now(message);
+  replaceable_.clear();
+  set_aside_bytes_ = 0;
+}
+
+void TopicHub::encode_now(ChannelMessage& message) {
   pass(message);
   if (is_kept(message.channel) && message.channel != "sim.asset") last_[message.channel] = std::move(message);
 }

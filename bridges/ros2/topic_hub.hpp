@@ -40,6 +40,8 @@ struct WaitingMessages {
 
   /// Adds a message; returns false if there is no room for it.
   bool add(Need need, std::int64_t utime, std::string_view channel, std::span<const std::byte> payload);
+  /// Returns whether the readers had better have them now than after the step.
+  bool are_many() const { return messages.size() >= max_messages / 16 || bytes >= max_bytes / 16; }
   /// Adds a jump in time, which has no channel.  Several without a message between are one.
   void add_jump(std::int64_t utime);
 
@@ -59,7 +61,8 @@ class TopicReader {
 };
 
 /// Topics for subscribers that come and go: encodes a message only while one of its topics is subscribed, besides those
-/// that show which topics there are.  need() may be called in any thread, the other functions in that of the readers.
+/// that show which topics there are; without a reader nothing, as what a later one needs is set aside.  need() may be
+/// called in any thread, the other functions in that of the readers.
 class TopicHub : private TopicSink {
  public:
   static constexpr std::size_t max_channels = 65'535;  ///< further LCM channels have no topics
@@ -67,7 +70,8 @@ class TopicHub : private TopicSink {
   /// Decides on a message.  `has_readers`: there is a reader.  Thread-safe.
   Need need(std::string_view channel, std::span<const std::byte> payload, bool has_readers);
 
-  void add(TopicReader& reader) { readers_.push_back(&reader); }
+  /// Adds a reader.  What was set aside is encoded first, so that there are the topics of all channels so far.
+  void add(TopicReader& reader);
   void remove(const TopicReader& reader) { std::erase(readers_, &reader); }
   /// Encodes a message for the readers of its topics.
   void encode(ChannelMessage& message);
@@ -93,6 +97,9 @@ class TopicHub : private TopicSink {
 
   bool wants(const Topic& topic) override;
   bool take(const Topic& topic, std::span<const std::byte> bytes) override;
+  void set_aside(ChannelMessage& message);
+  void encode_set_aside();
+  void encode_now(ChannelMessage& message);
   void pass(const ChannelMessage& message);
   void relate(const Topic& topic);
   void update_wanted(const std::string& channel);
@@ -102,6 +109,9 @@ class TopicHub : private TopicSink {
 
   TopicTable table_;
   std::vector<TopicReader*> readers_;
+  std::vector<ChannelMessage> set_aside_;           // in their order, while there is no reader
+  std::map<std::string, std::size_t> replaceable_;  // places of those in it that a later message replaces
+  std::size_t set_aside_bytes_ = 0;
   std::vector<int> subscribers_;  // by topic
   std::vector<std::set<std::string>> channels_of_topic_;
   std::map<std::string, std::set<std::size_t>, std::less<>> topics_of_channel_;

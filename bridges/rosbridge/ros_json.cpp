@@ -141,16 +141,27 @@ class JsonWriter {
         out_ += "null";
         return;
       }
-    std::array<char, 32> text{};
+    std::array<char, 32> text;
     out_.append(text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr);
   }
 
   bool write_text() {
     std::size_t size = 0;
     if (!read_count(size) || size == 0) return false;
-    out_ += json_text(Json(cdr_.substr(at_, size - 1)));
+    append_text(cdr_.substr(at_, size - 1));
     at_ += size;
     return true;
+  }
+
+  void append_text(std::string_view text) {
+    const auto is_plain = [](char c) { return c >= ' ' && c <= '~' && c != '"' && c != '\\'; };
+    if (!std::all_of(text.begin(), text.end(), is_plain)) {
+      out_ += json_text(Json(text));
+      return;
+    }
+    out_ += '"';
+    out_ += text;
+    out_ += '"';
   }
 
   bool write_bytes(std::size_t count) {

@@ -18,7 +18,13 @@ namespace bridges::rosbridge {
 void Protocol::message(std::int64_t utime, std::string_view channel, std::span<const std::byte> payload) {
   const ros2::Need need = topics_.need(channel, payload, clients() > 0);
   if (need == ros2::Need::none) return;
-  exchange_.put([&](Box& box) { return box.waiting.add(need, utime, channel, payload); });
+  bool many = false;
+  exchange_.gather([&](Box& box) {
+    const bool added = box.waiting.add(need, utime, channel, payload);
+    many = box.waiting.are_many();
+    return added;
+  });
+  if (many) exchange_.flush();
 }
 
 void Protocol::set_commands(std::vector<CommandTopic> commands) {
@@ -90,17 +96,23 @@ void Protocol::count_subscription(std::size_t topic, int change) {
 }
 
 Protocol::Bytes Protocol::publish_text(std::size_t topic, const Bytes& cdr) {
-  const ros2::Topic& of = topics_.topics()[topic];
-  auto shown = shown_.find(topic);
-  if (shown == shown_.end()) shown = shown_.emplace(topic, Shown{RosType(of.type, of.schema), nullptr, nullptr}).first;
-  if (shown->second.cdr != cdr) {
-    std::string text = R"({"op":"publish","topic":)" + json_text(nlohmann::json(of.name)) + ",\"msg\":";
-    append_json(shown->second.type, *cdr, text);
-    text += '}';
-    shown->second.cdr = cdr;
-    shown->second.text = std::make_shared<const std::string>(std::move(text));
+  auto known = shown_.find(topic);
+  if (known == shown_.end()) {
+    const ros2::Topic& of = topics_.topics()[topic];
+    std::string begin = R"({"op":"publish","topic":)" + json_text(nlohmann::json(of.name)) + ",\"msg\":";
+    known = shown_.emplace(topic, Shown{RosType(of.type, of.schema), std::move(begin), nullptr, nullptr}).first;
   }
-  return shown->second.text;
+  Shown& shown = known->second;
+  if (shown.cdr != cdr) {
+    std::string text;
+    if (shown.text) text.reserve(shown.text->size() + shown.begin.size());
+    text += shown.begin;
+    append_json(shown.type, *cdr, text);
+    text += '}';
+    shown.cdr = cdr;
+    shown.text = std::make_shared<const std::string>(std::move(text));
+  }
+  return shown.text;
 }
 
 const RosType& Protocol::command_type(const CommandTopic::Type& type) {

@@ -66,8 +66,10 @@ class Protocol final : public WebProtocol {
   int clients() const { return exchange_.clients(); }
   /// Returns the number of subscriptions so far: it increases with each.
   std::uint64_t subscriptions() const { return subscriptions_.load(); }
-  /// Passes a message on, published at this UTC, us since 1970.
+  /// Passes a message on, published at this UTC, us since 1970, with the next flush().
   void message(std::int64_t utime, std::string_view channel, std::span<const std::byte> payload);
+  /// Sends the messages so far.  Call it after each step.
+  void flush() { exchange_.flush(); }
   /// Sets the topics on which clients may command.
   void set_commands(std::vector<CommandTopic> commands);
   /// Sends what was held back and is due now.  Call some thirty times per second.
@@ -94,6 +96,7 @@ class Protocol final : public WebProtocol {
   /// Topic as clients get it: its type, and its last message in JSON, which all of them share.
   struct Shown {
     RosType type;
+    std::string begin;  ///< of each text
     Bytes cdr, text;
   };
 

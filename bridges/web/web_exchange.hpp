@@ -57,7 +57,15 @@ class WebExchange {
     } else if (!with_box(std::move(fill))) {
       return;
     }
-    if (!awake_.exchange(true)) post_([this] { deliver(); });
+    wake();
+  }
+  /// Does the same without waking: flush() does once for all, since that costs more than a message.
+  template <class Fill>
+  void gather(Fill fill) {
+    if (with_box(std::move(fill))) gathered_ = true;
+  }
+  void flush() {
+    if (gathered_.load() && gathered_.exchange(false)) wake();
   }
   /// Returns the next request, or std::nullopt.
   std::optional<Request> take_request() {
@@ -96,11 +104,15 @@ class WebExchange {
   int count_client(int change) { return clients_ += change; }
 
  private:
+  void wake() {
+    if (!awake_.exchange(true)) post_([this] { deliver(); });
+  }
+
   const std::function<void(Box)> deliver_;
   const std::size_t max_waiting_requests_;
   WebPost post_;
   std::atomic<int> clients_ = 0;
-  std::atomic<bool> awake_ = false;
+  std::atomic<bool> awake_ = false, gathered_ = false;
   std::mutex box_mutex_;
   Box box_;
   std::mutex request_mutex_;

@@ -2,6 +2,7 @@
 #include "bridges/web/web_listener.hpp"
 
 #include <fcntl.h>
+#include <netinet/tcp.h>
 #include <pthread.h>
 #include <signal.h>
 #include <spdlog/spdlog.h>
@@ -137,6 +138,7 @@ class WebSocketPeer final : public Peer, public WebLink, public std::enable_shar
   void await_greeting();
   void read();
   void send();
+  void gather(bool frames);
   void begin_close(const websocket::close_reason& reason);
   void leave_session();
   void end();
@@ -150,7 +152,7 @@ class WebSocketPeer final : public Peer, public WebLink, public std::enable_shar
   WebFrame frame_;
   std::optional<websocket::close_reason> close_when_sent_;
   const int number_;
-  bool sending_ = false, woken_ = false, closing_ = false, admitted_ = false;
+  bool sending_ = false, woken_ = false, gathering_ = false, closing_ = false, admitted_ = false;
 };
 
 void WebSocketPeer::set_options() {
@@ -230,9 +232,11 @@ void WebSocketPeer::send() {
   // One write at a time, as Beast requires.
   if (sending_ || closing_ || !session_) return;
   if (!session_->next(frame_)) {
+    gather(false);
     if (close_when_sent_) begin_close(*close_when_sent_);
     return;
   }
+  gather(true);
   sending_ = true;
   socket_.text(frame_.is_text);
   socket_.async_write(net::buffer(*frame_.bytes), [self = shared_from_this()](error_code error, std::size_t) {
@@ -241,6 +245,14 @@ void WebSocketPeer::send() {
     if (error) return self->end();
     self->send();
   });
+}
+
+/// Lets the kernel gather the frames that wait into full packets, as each packet costs more than its frames.
+void WebSocketPeer::gather(bool frames) {
+  if (std::exchange(gathering_, frames) == frames) return;
+  using Cork = net::detail::socket_option::boolean<IPPROTO_TCP, TCP_CORK>;
+  error_code ignored;
+  beast::get_lowest_layer(socket_).socket().set_option(Cork(frames), ignored);
 }
 
 void WebSocketPeer::close(WebClose code, std::string reason) {

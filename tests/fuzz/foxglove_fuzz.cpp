@@ -39,6 +39,7 @@ SHOAL_FUZZ_TARGET(foxglove) {
   std::vector<std::function<void()>> posted;
   Protocol protocol([&](std::function<void()> work) { posted.push_back(std::move(work)); });
   const auto run = [&] {
+    protocol.flush();
     for (const auto& work : std::exchange(posted, {})) work();
   };
   protocol.introduce({"fuzz", "session", {}, control, 0, 1});

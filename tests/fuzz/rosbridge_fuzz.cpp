@@ -36,6 +36,7 @@ SHOAL_FUZZ_TARGET(rosbridge) {
   std::vector<std::function<void()>> posted;
   Protocol protocol([&](std::function<void()> work) { posted.push_back(std::move(work)); }, may_control);
   const auto run = [&] {
+    protocol.flush();
     for (const auto& work : std::exchange(posted, {})) work();
   };
   protocol.set_commands(bridges::rosbridge::command_topics(

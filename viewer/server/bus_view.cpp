@@ -38,6 +38,7 @@ void BusView::message(std::string_view channel, std::span<const std::byte> paylo
   }
   newest_utime_ = std::max(newest_utime_, utime);
   session_.pass_on(utime, channel, payload);
+  session_.flush();
   if (channel != "sim.info") return;
   try {
     const auto info = shoal::decode<shoal::sim_info_t>(payload, shoal::Finite::any);

@@ -31,10 +31,11 @@ class FoxgloveView {
   void introduce(const std::string& name, const std::string& version, bridges::foxglove::Control control,
                  std::int64_t start_us = 0, std::int64_t end_us = 0);
   int clients() const { return protocol_->clients(); }
-  /// Passes a message on, published at this UTC.
+  /// Passes a message on, published at this UTC, with the next flush().
   void message(std::int64_t utime, std::string_view channel, std::span<const std::byte> payload) {
     protocol_->message(utime, channel, payload);
   }
+  void flush() { protocol_->flush(); }
   /// Shows a time, at most some thirty times per second of wall time.
   void show_time(std::int64_t utime);
   /// Announces that the time was set.

@@ -198,6 +198,7 @@ void LogView::advance(double wall_s) {
   } else if (!paused_ && loop_ && clients > 0) {
     seek(index_.start_us());
   }
+  session_.flush();
   session_.flush_traffic(static_cast<std::int64_t>(now_us_));
   constexpr double status_interval_s = 1;
   since_status_s_ += wall_s;

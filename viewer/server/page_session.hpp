@@ -39,10 +39,14 @@ struct PageSession {
   /// Sends what is due of the messages themselves, at a simulated time.
   void flush_traffic(std::int64_t time_us) { traffic.flush(time_us, messages.scene(), messages.scene_number()); }
 
-  /// Passes a message on to the clients of other protocols, published at this UTC.
+  /// Passes a message on to the clients of other protocols, published at this UTC, with the next flush().
   void pass_on(std::int64_t utime, std::string_view channel, std::span<const std::byte> payload) {
     foxglove.message(utime, channel, payload);
     if (rosbridge) rosbridge->message(utime, channel, payload);
+  }
+  void flush() {
+    foxglove.flush();
+    if (rosbridge) rosbridge->flush();
   }
 
   bridges::WebServer server;

@@ -23,10 +23,11 @@ class RosbridgeView {
   int clients() const { return protocol_->clients(); }
   /// Offers the commands that the vehicles of the world take now; serve() keeps this up to date.
   void show_commands(const sim::World& world);
-  /// Passes a message on, published at this UTC.
+  /// Passes a message on, published at this UTC, with the next flush().
   void message(std::int64_t utime, std::string_view channel, std::span<const std::byte> payload) {
     protocol_->message(utime, channel, payload);
   }
+  void flush() { protocol_->flush(); }
   /// Returns true once after there were new subscriptions.
   bool take_subscribed();
   /// Sends what was held back and is due, at most some thirty times per second of wall time.

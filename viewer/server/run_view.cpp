@@ -79,6 +79,7 @@ void RunView::moved(const sim::World& world, const sim::RunControl& control, boo
 
 void RunView::after_step(const sim::World& world, const bridges::ViewPublisher& publisher,
                          const sim::RunControl& control) {
+  session_.flush();
   session_.foxglove.show_time(world.epoch_us() + world.now().count());
   last_us_ = world.now().count();
   past_.remember(world, publisher);
@@ -215,6 +216,7 @@ void RunView::serve_foxglove(const sim::World& world, const bridges::ViewPublish
   const bool of_rosbridge = session_.rosbridge && session_.rosbridge->take_subscribed();
   if (session_.foxglove.take_subscribed() || of_rosbridge)
     session_.pass_on(utime(), "sim.bodies", shoal::encode(publisher.bodies()));
+  session_.flush();
 }
 
 void RunView::ended(const sim::World& world, const sim::RunControl& control, const std::string& why,

@@ -118,6 +118,9 @@ class Client {
   /// multiple of `period_s`; sim.clock is published at the `state_rate_hz` of the world, 10 Hz by default.
   void follow(double period_s);
 
+  /// Calls `after_batch` without lockstep whenever all messages that have arrived are handled, before the client waits:
+  /// for a program that passes on together what comes together.  Its handlers must return at once.
+  void handle_in_batches(std::function<void()> after_batch);
   /// Waits for the next tick, and returns its simulated time in microseconds.  In lockstep it first acknowledges the
   /// previous tick: messages published since then take effect in the next step.  All reports up to the tick have been
   /// handled (without lockstep: those received so far).  Returns std::nullopt if the run is over, also on further

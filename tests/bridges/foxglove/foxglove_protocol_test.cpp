@@ -107,6 +107,7 @@ class FoxgloveProtocolTest : public testing::Test {
     run();
   }
   void run() {
+    protocol_.flush();
     for (const auto& work : std::exchange(posted_, {})) work();
   }
   template <class Message>
@@ -195,6 +196,7 @@ TEST_F(FoxgloveProtocolTest, WithoutAClientNothingButTheFirstMessagesIsCopied) {
   for (int i = 0; i < 100; ++i) protocol_.message(i, "a.clock", shoal::encode(shoal::utime_t{i}));
   protocol_.show_time(5);
   protocol_.set_state({});
+  protocol_.flush();
   EXPECT_THAT(posted_, IsEmpty());
 }
 
@@ -398,6 +400,7 @@ TEST_F(FoxgloveProtocolTest, AClientThatLeavesEndsItsSubscriptions) {
   viewer.leave();
   EXPECT_EQ(protocol_.clients(), 0);
   protocol_.message(1, "a.clock", shoal::encode(shoal::utime_t{}));
+  protocol_.flush();
   EXPECT_THAT(posted_, IsEmpty());
 }
 

@@ -39,6 +39,23 @@ TEST(LcmListener, ReceivesAllChannelsInOrder) {
   EXPECT_FALSE(listener.next(0ms));
 }
 
+TEST(LcmListener, MessagesThatHaveArrivedAreOneBatch) {
+  LcmListener listener(own_url());
+  listener.listen("a");
+  int batches = 0;
+  listener.take_in_batches([&] { ++batches; });
+  LcmListener sender(own_url());
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(sender.publish("a", bytes_of(std::to_string(i))));
+  for (int i = 0; i < 10; ++i) {
+    const auto message = listener.next(60s);
+    ASSERT_TRUE(message);
+    EXPECT_EQ(message->payload, bytes_of(std::to_string(i)));
+  }
+  EXPECT_EQ(batches, 1);  // before the first one; they were there already
+  EXPECT_FALSE(listener.next(0ms));
+  EXPECT_EQ(batches, 2);
+}
+
 TEST(LcmListener, RefusesWhatLcmCannotCarry) {
   LcmListener listener("memq://");
   EXPECT_FALSE(listener.publish("", bytes_of("x")));

@@ -73,6 +73,31 @@ TEST_F(TopicHubTest, ALaterReaderGetsTheLastMessageOfALatchedTopic) {
   EXPECT_THAT(reader_.times, testing::ElementsAre(2));
 }
 
+TEST(TopicHubWithoutReaders, EncodesNothingUntilOneComesWhichHasAllTopicsAndTheLastScene) {
+  TopicHub hub;
+  const auto encode = [&](std::int64_t utime, const std::string& channel, const auto& message) {
+    ChannelMessage entry{utime, channel, shoal::encode(message)};
+    hub.encode(entry);
+  };
+  shoal::sim_scene_t scene{};
+  scene.scene = R"({"op":"scene","bodies":[]})";
+  encode(1, "a", shoal::utime_t{1});
+  for (int i = 2; i <= 5; ++i) encode(i, "sim.scene", scene);
+  encode(6, "b", shoal::utime_t{1});
+  EXPECT_THAT(hub.topics(), testing::IsEmpty());
+  Reader reader;
+  hub.add(reader);
+  std::vector<std::string> names;
+  for (const Topic& topic : hub.topics()) names.push_back(topic.name);
+  EXPECT_THAT(names, testing::ElementsAre("/a", "/sim/scene", "/scene", "/b"));
+  reader.topic = 2;
+  hub.count_subscription(2, 1);
+  hub.send_latched(reader, 2);
+  EXPECT_THAT(reader.times, testing::ElementsAre(5));
+  encode(7, "sim.scene", scene);
+  EXPECT_THAT(reader.times, testing::ElementsAre(5, 7));
+}
+
 TEST(WaitingMessages, ThoseWithoutRoomAreCountedIfSomeoneWantsThemAndKeptOnesHaveRoom) {
   WaitingMessages waiting;
   const std::vector<std::byte> half(WaitingMessages::max_bytes / 2);

@@ -78,6 +78,7 @@ class RosbridgeProtocolTest : public testing::Test {
     run();
   }
   void run() {
+    protocol_.flush();
     for (const auto& work : std::exchange(posted_, {})) work();
   }
   template <class Message>
@@ -128,6 +129,18 @@ TEST_F(RosbridgeProtocolTest, EachMessageComesOnceHoweverOftenATopicIsSubscribed
   client.send({{"op", "unsubscribe"}, {"topic", "/r1/gps/fix"}, {"id", "b"}});
   publish_fix(4);
   EXPECT_THAT(client.read("publish"), IsEmpty());
+}
+
+TEST_F(RosbridgeProtocolTest, TheThreadOfTheServerIsWokenOnceForTheMessagesOfAStep) {
+  publish_fix(1);
+  RosClient client(protocol_, 1);
+  client.subscribe("/r1/gps/fix");
+  shoal::gps_data_t gps{};
+  gps.gps_lock = 1;
+  for (int i = 0; i < 10; ++i) protocol_.message(i, "r1.gps", shoal::encode(gps));
+  EXPECT_THAT(posted_, IsEmpty());
+  run();
+  EXPECT_THAT(client.read("publish"), SizeIs(10));
 }
 
 TEST_F(RosbridgeProtocolTest, ASubscriptionOfAnotherTypeIsRefused) {

@@ -3,8 +3,11 @@
 #include <cmath>
 #include <condition_variable>
 #include <iostream>
+#include <iterator>
 #include <mutex>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "bridges/lcm/lcm_connection.hpp"
 #include "bridges/moos/moos_connection.hpp"
@@ -122,6 +125,7 @@ class Bridge {
                [this](const std::vector<MoosMessage>& messages) { inbox_.take(messages); },
                [](const std::string& sentence) { std::cerr << "shoal-moos: " << sentence << '\n'; }}) {
     subscribe();
+    if (!options.participation.in_lockstep) client_.handle_in_batches([this] { flush(); });
   }
 
   int run() {
@@ -130,6 +134,7 @@ class Bridge {
       moos_.await_open(std::chrono::milliseconds(std::llround(1000 * options_.answer_timeout_s)));
     const auto decide = [this](std::int64_t utime) { exchange(utime); };
     const int exit_code = autonomy::take_part(client_, options_.participation, report_due_, decide);
+    flush();
     if (inbox_.refused() > 0)
       std::cerr << "shoal-moos: " << inbox_.refused() << " values were refused: no number, or no modem message\n";
     return exit_code;
@@ -139,7 +144,7 @@ class Bridge {
   void subscribe() {
     client_.subscribe<shoal::sim_info_t>("sim.info", [this](const shoal::sim_info_t& info) { take(info); });
     options_.vehicle.subscribe(client_, navigation_, [this](VehicleNavigation::Fields fields) {
-      moos_.notify(bridges::nav_values(navigation_, fields));
+      post(bridges::nav_values(navigation_, fields));
     });
     listen<shoal::planar_lidar_t>(options_.lidar, bridges::laser_value);
     listen<shoal::odometry_t>(options_.odometry, bridges::odometry_value);
@@ -149,8 +154,12 @@ class Bridge {
   void listen(const std::string& device, Value value) {
     if (device.empty()) return;
     client_.subscribe<Message>(options_.vehicle.name + "." + device,
-                               [this, value](const Message& message) { moos_.notify({value(message)}); });
+                               [this, value](const Message& message) { post({value(message)}); });
   }
+
+  /// Values that come together become one packet, as sending costs more than they do: in lockstep those of a tick.
+  void post(std::vector<MoosValue> values) { std::move(values.begin(), values.end(), std::back_inserter(posted_)); }
+  void flush() { moos_.notify(std::exchange(posted_, {})); }
 
   void take(const shoal::sim_info_t& info) {
     if (std::exchange(knows_world_, true)) return;
@@ -165,12 +174,13 @@ class Bridge {
     const double time_s = 1e-6 * static_cast<double>(utime);
     // Also when a new run has begun, with an earlier time.
     if (!options_.no_node_report && (utime >= report_due_ || utime < report_due_ - report_period_us)) {
-      moos_.notify(bridges::node_report(options_.node, navigation_, moos_time_s(file_.time_warp)));
+      post(bridges::node_report(options_.node, navigation_, moos_time_s(file_.time_warp)));
       report_due_ = utime + report_period_us;
     }
-    moos_.notify({{"SHOAL_TIME", time_s}});
+    post({{"SHOAL_TIME", time_s}});
     check_pace(time_s);
     if (!options_.participation.in_lockstep) return;
+    flush();
     inbox_.await_answer(time_s, options_.answer_timeout_s);
     for (const bridges::ChannelPayload& command : inbox_.take_commands())
       client_.publish_bytes(command.channel, command.payload);
@@ -199,6 +209,7 @@ class Bridge {
   std::int64_t report_due_ = 0;                          // utime; it goes back with the world
   std::optional<std::pair<double, double>> pace_start_;  // simulated and wall time
   bool pace_warned_ = false;
+  std::vector<MoosValue> posted_;
   Inbox inbox_;
   shoal::Client client_;
   MoosConnection moos_;
