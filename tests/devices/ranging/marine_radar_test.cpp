@@ -54,7 +54,7 @@ class Turn {
   }
 
  private:
-  radar_sector_t sector_;
+  radar_sector_t sector_{};
 };
 
 Turn turn_of(const std::string& yaml, const std::string& channel = "r1.s.truth") {

@@ -38,6 +38,7 @@ SKIPPED = {
     "damping_that_drives": "numbers of one list have rules of their own",
     "derivative_that_drives": "the names of derivatives are their own grammar",
     "dvl_layer_that_ends_before_it_begins": "one number depends on another",
+    "radar_blind_to_its_range": "one number depends on another",
     "turn_of_an_hour": "the bound depends on the type of the device",
     "sonar_picture_too_large": "the product of two numbers is limited",
     "metric_with_a_key_of_another_type": "the keys depend on another key",
