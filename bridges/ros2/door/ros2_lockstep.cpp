@@ -8,7 +8,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// stop() does not notify under the mutex, so that a signal may lead to it: waits look again.
+/// stop() does not notify under the lock, so that a signal may lead to it: waits look again.
 constexpr auto slice = 100ms;
 /// Patience before a warning names what the world waits for.
 constexpr auto patience = 3s;
