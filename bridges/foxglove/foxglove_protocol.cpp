@@ -19,15 +19,7 @@ void Protocol::introduce(ServerInfo info) {
 }
 
 void Protocol::message(std::int64_t utime, std::string_view channel, std::span<const std::byte> payload) {
-  const ros2::Need need = topics_.need(channel, payload, clients() > 0);
-  if (need == ros2::Need::none) return;
-  bool many = false;
-  exchange_.gather([&](Box& box) {
-    const bool added = box.waiting.add(need, utime, channel, payload);
-    many = box.waiting.are_many();
-    return added;
-  });
-  if (many) exchange_.flush();
+  topics_.gather(exchange_, utime, channel, payload);
 }
 
 void Protocol::show_time(std::int64_t utime) {

@@ -70,6 +70,21 @@ class TopicHub : private TopicSink {
   /// Decides on a message.  `has_readers`: there is a reader.  Thread-safe.
   Need need(std::string_view channel, std::span<const std::byte> payload, bool has_readers);
 
+  /// Puts a message that is needed into `waiting` of the box of an exchange with the thread of the readers (a
+  /// WebExchange), whose next flush() wakes it.  Thread-safe.
+  template <class Exchange>
+  void gather(Exchange& exchange, std::int64_t utime, std::string_view channel, std::span<const std::byte> payload) {
+    const Need needed = need(channel, payload, exchange.clients() > 0);
+    if (needed == Need::none) return;
+    bool many = false;
+    exchange.gather([&](auto& box) {
+      const bool added = box.waiting.add(needed, utime, channel, payload);
+      many = box.waiting.are_many();
+      return added;
+    });
+    if (many) exchange.flush();
+  }
+
   /// Adds a reader.  What was set aside is encoded first, so that there are the topics of all channels so far.
   void add(TopicReader& reader);
   void remove(const TopicReader& reader) { std::erase(readers_, &reader); }

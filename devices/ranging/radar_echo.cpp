@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/medium/sea_states.hpp"
+
 namespace devices {
 
 namespace {
@@ -71,10 +73,10 @@ double sea_state_of(const sim::Medium& medium) {
   for (const sim::WaveComponent& wave : medium.wave_components())
     variance_m2 += wave.amplitude_m * wave.amplitude_m / 2;
   const double hs_m = 4 * std::sqrt(variance_m2);
-  constexpr double heights_m[] = {0, 0.05, 0.3, 0.88, 1.88, 3.25, 5};  // as WavesConfig::sea_state
-  const auto* const above = std::upper_bound(std::begin(heights_m), std::end(heights_m), hs_m);
-  if (above == std::end(heights_m)) return max_sea_state;
-  return static_cast<double>(above - heights_m) - (*above - hs_m) / (*above - *(above - 1));
+  const auto& heights_m = sim::hs_of_sea_state_m;
+  const auto* const above = std::upper_bound(heights_m.begin(), heights_m.end(), hs_m);
+  const auto next = static_cast<double>(above - heights_m.begin());
+  return next > max_sea_state ? max_sea_state : next - (*above - hs_m) / (*above - *(above - 1));
 }
 
 double detected_mW(double steady_mW, double interference_mW, sim::Random& random) {

@@ -7,6 +7,7 @@
 #include "sim/config/choice_keys.hpp"
 #include "sim/config/message_text.hpp"
 #include "sim/medium/ctd_file.hpp"
+#include "sim/medium/sea_states.hpp"
 
 namespace sim {
 
@@ -268,12 +269,11 @@ void check_keys_of_waves(ParamReader& in, WavesConfig::Type type) {
     in.error("sea_state", "'sea_state' gives height and period; leave out 'hs_m' and 'tp_s'");
 }
 
-/// Sets height and period of a sea state: the middle of the range of heights and the most probable period in the open
-/// North Atlantic (Lee and Bales 1984, as in STANAG 4194; sea states 0 and 1 have no period there and use that of 2).
+/// Sets height and period of a sea state: the period is the most probable one in the open North Atlantic (source as for
+/// the heights; sea states 0 and 1 have no period there and use that of 2).
 void take_sea_state(WavesConfig& waves) {
-  constexpr double hs_m[] = {0, 0.05, 0.3, 0.88, 1.88, 3.25, 5, 7.5, 11.5};
   constexpr double tp_s[] = {7.5, 7.5, 7.5, 7.5, 8.8, 9.7, 12.4, 15, 16.4};
-  waves.hs_m = hs_m[waves.sea_state];
+  waves.hs_m = hs_of_sea_state_m[static_cast<std::size_t>(waves.sea_state)];
   waves.tp_s = tp_s[waves.sea_state];
 }
 

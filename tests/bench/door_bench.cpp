@@ -3,11 +3,6 @@
 // of all boats to rosbridge.  Prints the CPU time of the door, by message that its client gets, and how much later than
 // a plain subscriber of LCM the client has the time of the run.
 //   door_bench [SECONDS] [BIN]     BIN: folder of other programs than those built here
-#include <dirent.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -30,45 +25,26 @@
 #include "tests/bridges/web/web_client.hpp"
 #include "tests/own_ports.hpp"
 #include "tests/project_paths.hpp"
+#include "tests/scratch_folder.hpp"
+#include "tests/system/shoal_program.hpp"
 
 namespace {
 
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
+using system_test::Program;
 using web_test::Json;
 
-/// A program that ends with this object.
-class Child {
- public:
-  explicit Child(std::vector<std::string> words) : pid_(fork()) {
-    if (pid_ != 0) return;
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    freopen("/dev/null", "w", stdout);
-    execv(arguments[0], arguments.data());
-    std::perror(arguments[0]);
-    _exit(127);
+/// CPU time of a process so far, by the nanoseconds that the scheduler counts for each thread.
+double cpu_s(const Program& program) {
+  double sum_s = 0;
+  for (const auto& thread : std::filesystem::directory_iterator("/proc/" + std::to_string(program.pid()) + "/task")) {
+    double on_cpu_ns = 0;
+    std::ifstream(thread.path() / "schedstat") >> on_cpu_ns;
+    sum_s += 1e-9 * on_cpu_ns;
   }
-  ~Child() {
-    kill(pid_, SIGTERM);
-    waitpid(pid_, nullptr, 0);
-  }
-  Child(const Child&) = delete;
-  /// CPU time so far, by the nanoseconds that the scheduler counts for each thread.
-  double cpu_s() const {
-    double sum_s = 0;
-    for (const auto& thread : std::filesystem::directory_iterator("/proc/" + std::to_string(pid_) + "/task")) {
-      double on_cpu_ns = 0;
-      std::ifstream(thread.path() / "schedstat") >> on_cpu_ns;
-      sum_s += 1e-9 * on_cpu_ns;
-    }
-    return sum_s;
-  }
-
- private:
-  pid_t pid_;
-};
+  return sum_s;
+}
 
 /// When a plain subscriber and the client of a door had each time of the run.
 class Arrivals {
@@ -136,10 +112,10 @@ std::string ten_boats() {
   return text;
 }
 
-/// Counts while `read` gets messages from the door, and prints what they cost.  `cpu_s`: of the door; `before_s`: what
-/// the same time took without it.
+/// Counts while `read` gets messages from the door, and prints what they cost.  `door_cpu_s`: of the door; `before_s`:
+/// what the same time took without it.
 void measure(const char* name, Arrivals& arrivals, double seconds, double before_s,
-             const std::function<double()>& cpu_s, const std::function<int()>& read) {
+             const std::function<double()>& door_cpu_s, const std::function<int()>& read) {
   const auto until = [&](double length_s) {
     long messages = 0;
     for (const auto end = Clock::now() + std::chrono::duration<double>(length_s); Clock::now() < end;)
@@ -147,9 +123,9 @@ void measure(const char* name, Arrivals& arrivals, double seconds, double before
     return messages;
   };
   until(3);  // the first messages describe the run
-  const double begin_s = cpu_s();
+  const double begin_s = door_cpu_s();
   const long messages = until(seconds);
-  const double used_s = cpu_s() - begin_s - before_s;
+  const double used_s = door_cpu_s() - begin_s - before_s;
   std::printf("%s: %.0f messages/s, %.2f %% of a core, %.1f us of CPU a message\n", name,
               static_cast<double>(messages) / seconds, 100 * used_s / seconds,
               1e6 * used_s / static_cast<double>(messages));
@@ -164,7 +140,7 @@ void measure_moos(const std::string& bin, const std::string& url, double seconds
   if (bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 || listen(listener, 1) != 0)
     throw std::runtime_error("no port for a MOOSDB");
   Arrivals arrivals(url);
-  const Child door({bin + "/shoal-moos", "--name", "boat1", "--port", std::to_string(port), "--lcm-url", url});
+  const Program door({bin + "/shoal-moos", "--name", "boat1", "--port", std::to_string(port), "--lcm-url", url});
   const int client = accept(listener, nullptr, nullptr);
   moos_test::Msg welcome{'W'};
   welcome.text = "asynchronous";
@@ -173,7 +149,7 @@ void measure_moos(const std::string& bin, const std::string& url, double seconds
   std::string bytes;
   bool greeted = false;
   measure(
-      "MOOS", arrivals, seconds, 0, [&] { return door.cpu_s(); },
+      "MOOS", arrivals, seconds, 0, [&] { return cpu_s(door); },
       [&] {
         char chunk[65536];
         const ssize_t got = recv(client, chunk, sizeof chunk, 0);
@@ -198,8 +174,8 @@ void measure_moos(const std::string& bin, const std::string& url, double seconds
 void measure_nmea(const std::string& bin, const std::string& url, double seconds) {
   const int port = test_support::own_port(3);
   Arrivals arrivals(url);
-  const Child door({bin + "/shoal-nmea", "--vehicle", "boat1", "--listen", "127.0.0.1:" + std::to_string(port),
-                    "--period-s", "0.1", "--lcm-url", url});
+  const Program door({bin + "/shoal-nmea", "--vehicle", "boat1", "--listen", "127.0.0.1:" + std::to_string(port),
+                      "--period-s", "0.1", "--lcm-url", url});
   std::optional<nmea_test::Peer> peer;
   web_test::await([&] {
     try {
@@ -209,7 +185,7 @@ void measure_nmea(const std::string& bin, const std::string& url, double seconds
     return peer.has_value();
   });
   measure(
-      "NMEA, ten times a second", arrivals, seconds, 0, [&] { return door.cpu_s(); },
+      "NMEA, ten times a second", arrivals, seconds, 0, [&] { return cpu_s(door); },
       [&] {
         const auto line = peer.value().line();
         if (!line) throw std::runtime_error("shoal-nmea has gone");
@@ -219,14 +195,14 @@ void measure_nmea(const std::string& bin, const std::string& url, double seconds
 }
 
 /// All topics but images, clouds, and what is to be drawn.
-void measure_rosbridge(const Child& run, int port, const std::string& url, double seconds) {
-  const double idle_begin_s = run.cpu_s();
+void measure_rosbridge(const Program& run, int port, const std::string& url, double seconds) {
+  const double idle_begin_s = cpu_s(run);
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
-  const double idle_s = run.cpu_s() - idle_begin_s;
+  const double idle_s = cpu_s(run) - idle_begin_s;
   Arrivals arrivals(url);
   web_test::Client client(static_cast<std::uint16_t>(port));
   client.upgrade("");
-  std::this_thread::sleep_for(1s);  // each channel has had a message
+  // What was published before the first client has its topics from the start.
   client.send_json({{"op", "call_service"}, {"service", "/rosapi/topics"}});
   const Json values = client.read_json()["values"];
   for (std::size_t i = 0; i < values["topics"].size(); ++i) {
@@ -236,7 +212,7 @@ void measure_rosbridge(const Child& run, int port, const std::string& url, doubl
       client.send_json({{"op", "subscribe"}, {"topic", values["topics"][i]}});
   }
   measure(
-      "rosbridge, without a client beside it", arrivals, seconds, idle_s, [&] { return run.cpu_s(); },
+      "rosbridge, without a client beside it", arrivals, seconds, idle_s, [&] { return cpu_s(run); },
       [&] {
         const auto frame = client.read_frame();
         if (!frame) throw std::runtime_error("the server of the run has gone");
@@ -251,23 +227,22 @@ void measure_rosbridge(const Child& run, int port, const std::string& url, doubl
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // children would print what waits
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   const double seconds = argc > 1 ? std::atof(argv[1]) : 20;
   const std::string bin = argc > 2 ? argv[2] : test_support::built_path("bin"), url = test_support::own_url();
-  char folder[] = "/tmp/shoal-doors-XXXXXX";
-  if (mkdtemp(folder) == nullptr) return std::perror(folder), 1;
-  const std::string world = std::string(folder) + "/doors.yaml";
+  const test_support::ScratchFolder folder;
+  const std::string world = folder.file("doors.yaml");
   std::ofstream(world) << ten_boats();
   const std::string port = std::to_string(test_support::own_port(1));
   try {
-    const Child run({bin + "/shoal", "run", world, "--speed", "1", "--duration", "forever", "--quiet", "--no-keys",
-                     "--rosbridge", "--view-port", port, "--allow-path", test_support::source_path(""), "--lcm-url",
-                     url});
+    const Program run({bin + "/shoal", "run", world, "--speed", "1", "--duration", "forever", "--quiet", "--no-keys",
+                       "--rosbridge", "--view-port", port, "--allow-path", test_support::source_path(""), "--lcm-url",
+                       url});
     measure_moos(bin, url, seconds);
     measure_nmea(bin, url, seconds);
     measure_rosbridge(run, std::atoi(port.c_str()), url, seconds);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "door_bench: %s\n", error.what());
+    return 1;
   }
-  std::filesystem::remove_all(folder);
 }

@@ -27,7 +27,7 @@ using namespace std::chrono_literals;
 constexpr std::size_t max_topics = 5000;
 
 /// Messages that are kept of a topic, and of the commands to one, in lockstep.
-constexpr int most_in_a_tick = 1000;
+constexpr int max_in_a_tick = 1000;
 
 /// In place of a writer that cannot be made.
 constexpr std::int32_t no_endpoint = -1;
@@ -124,7 +124,7 @@ void Ros2Door::add_lockstep() {
   const DdsQos qos{1, true, user_data(Tick::type, Tick::schema())};
   const std::string type = dds_type_name(Tick::type);
   ticks_ = participant_.add_writer("rt/shoal/tick", type, qos);
-  tick_answers_ = participant_.add_reader("rt/shoal/tick_done", type, {most_in_a_tick, false, qos.user_data});
+  tick_answers_ = participant_.add_reader("rt/shoal/tick_done", type, {max_in_a_tick, false, qos.user_data});
   Ros2Lockstep::Links links;
   links.pass = [this](const std::string& channel, std::span<const std::byte> payload) {
     const std::scoped_lock lock(mutex_);
@@ -229,7 +229,7 @@ void Ros2Door::learn_vehicle(const shoal::sim_vehicle_t& description) {
     try {
       const Endpoint reader =
           participant_.add_reader(dds_topic(topic.name), dds_type_name(topic.type),
-                                  {lockstep_ ? most_in_a_tick : 10, false, user_data(topic.type, topic.schema)});
+                                  {lockstep_ ? max_in_a_tick : 10, false, user_data(topic.type, topic.schema)});
       vehicle.readers.push_back(reader);
       commands_.emplace(reader, std::move(topic));
     } catch (const BusError& error) {
@@ -272,6 +272,7 @@ void Ros2Door::look_after(Clock::time_point now) {
   int questions = 200;
   for (const auto& [name, vehicle] : vehicles_)
     if (!vehicle.is_described && questions-- > 0) questions_.insert_or_assign(ask("describe", 0, name), name);
+  while (questions_.size() > max_topics) questions_.erase(questions_.begin());  // a simulator that does not answer
 }
 
 /// Publishes rmw_dds_common/ParticipantEntitiesInfo, by which ROS 2 knows the endpoints of a node.
@@ -330,15 +331,17 @@ DdsQos Ros2Door::qos_of(const Topic& topic) const {
   if (topic.latched || !is_in_tick_) return qos;
   const auto rate = rates_hz_.find(topic.lcm_channel);
   const double in_a_tick = rate == rates_hz_.end() ? 0 : rate->second * options_.lockstep.period_s;
-  qos.depth = in_a_tick > 0 ? static_cast<int>(std::min<double>(most_in_a_tick, 10 + 2 * std::ceil(in_a_tick)))
-                            : most_in_a_tick;
+  qos.depth =
+      in_a_tick > 0 ? static_cast<int>(std::min<double>(max_in_a_tick, 10 + 2 * std::ceil(in_a_tick))) : max_in_a_tick;
   return qos;
 }
 
 bool Ros2Door::take(const Topic& topic, std::span<const std::byte> bytes) {
   ++counts_.published;
-  if (is_in_tick_ && !topic.latched) lockstep_->count(topic.name);
-  if (!participant_.write(writers_[topic.number], bytes)) ++counts_.late;
+  if (!participant_.write(writers_[topic.number], bytes))
+    ++counts_.late;  // a node does not wait for it
+  else if (is_in_tick_ && !topic.latched)
+    lockstep_->count(topic.name);
   return true;
 }
 

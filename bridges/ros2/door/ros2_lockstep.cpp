@@ -91,7 +91,9 @@ void Ros2Lockstep::count(const std::string& topic) {
 
 void Ros2Lockstep::add(const std::string& topic, std::optional<TickExchange::Command> command) {
   const std::scoped_lock lock(mutex_);
-  exchange_.add(topic, std::move(command));
+  if (!exchange_.add(topic, std::move(command)) && !std::exchange(was_full_, true))
+    links_.warn(topic + ": a tick has at most " + std::to_string(TickExchange::max_commands) +
+                " commands; further ones are lost");
   changed_.notify_all();
 }
 

@@ -54,8 +54,6 @@ class Ros2Lockstep {
   void count(const std::string& topic);
   void add(const std::string& topic, std::optional<TickExchange::Command> command);
   void take(const Tick& answer);
-  /// Tells that channels() may have changed.
-  void look_again() { changed_.notify_all(); }
 
  private:
   void subscribe(const std::string& channel);
@@ -71,7 +69,7 @@ class Ros2Lockstep {
   std::mutex mutex_;  // protects the exchange
   std::condition_variable changed_;
   TickExchange exchange_;
-  bool was_contested_ = false;
+  bool was_contested_ = false, was_full_ = false;
   std::atomic<bool> stopped_ = false;
 };
 

@@ -57,9 +57,11 @@ const Tick& TickExchange::begin(std::int64_t utime, std::int64_t step, std::int3
   return tick_;
 }
 
-void TickExchange::add(const std::string& topic, std::optional<Command> command) {
-  if (++held_ > max_commands) return;
+bool TickExchange::add(const std::string& topic, std::optional<Command> command) {
+  if (held_ == max_commands) return false;
+  ++held_;
   commands_[topic].push_back(std::move(command));
+  return true;
 }
 
 void TickExchange::take(const Tick& answer) {

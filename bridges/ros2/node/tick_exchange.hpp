@@ -60,8 +60,8 @@ class TickExchange {
   void count(const std::string& topic) { ++counts_[topic]; }
   /// Begins a tick, and returns it with the messages since the previous one.
   const Tick& begin(std::int64_t utime, std::int64_t step, std::int32_t branch, bool last);
-  /// Takes a command; none: it was refused, and is only counted.
-  void add(const std::string& topic, std::optional<Command> command);
+  /// Takes a command; none: it was refused, and is only counted.  Returns false if there is no room for it.
+  bool add(const std::string& topic, std::optional<Command> command);
   /// Takes an answer.  One of a node that is not awaited, or to another tick, is ignored.
   void take(const Tick& answer);
   /// Returns what the tick lacks, `the answer of 'pilot'` or `a message on /rover1/cmd_vel`; empty: nothing.
@@ -77,7 +77,7 @@ class TickExchange {
   Tick tick_;
   std::map<std::string, Tick> answers_;                                  // by node
   std::map<std::string, std::vector<std::optional<Command>>> commands_;  // by topic
-  std::size_t held_ = 0;                                                 ///< commands since the previous tick
+  std::size_t held_ = 0;                                                 // commands since the previous tick
   std::string contested_;
 };
 

@@ -44,8 +44,7 @@ class Hostile {
     to.sin_family = AF_INET;
     to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     to.sin_port = htons(static_cast<std::uint16_t>(port_ + offsets[below(5)]));
-    if (sendto(socket_, packet_.data(), packet_.size(), 0, reinterpret_cast<sockaddr*>(&to), sizeof to) < 0)
-      usleep(100);
+    sendto(socket_, packet_.data(), packet_.size(), 0, reinterpret_cast<sockaddr*>(&to), sizeof to);
   }
 
  private:

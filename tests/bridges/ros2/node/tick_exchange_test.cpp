@@ -101,7 +101,8 @@ TEST(TickExchangeTest, TellsWhenTwoNodesSendToOneTopic) {
 TEST(TickExchangeTest, ASenderWithoutEndCostsBoundedMemory) {
   TickExchange exchange({"a"});
   exchange.begin(0, 1, 0, false);
-  for (std::size_t i = 0; i < 2 * TickExchange::max_commands; ++i) exchange.add("/v/cmd", command("v"));
+  for (std::size_t i = 0; i < TickExchange::max_commands; ++i) EXPECT_TRUE(exchange.add("/v/cmd", command("v")));
+  EXPECT_FALSE(exchange.add("/v/cmd", command("v")));
   EXPECT_EQ(exchange.finish().size(), TickExchange::max_commands);
 }
 
