@@ -23,6 +23,14 @@ Mechanism::Mechanism(int group, const MechanismConfig& config)
       same_frame_(config.bodies.front().position_m.isZero(0) && config.bodies.front().rpy_rad.isZero(0)),
       X_BV_(make_pose(config.bodies.front().position_m, config.bodies.front().rpy_rad).inverse()) {}
 
+Pose Mechanism::X_WV() const {
+  return base().X_WB() * X_BV_;
+}
+
+Pose Mechanism::base_pose(const Pose& X_WV) const {
+  return same_frame_ ? X_WV : X_WV * X_BV_.inverse();
+}
+
 void Mechanism::place(PhysicsWorld& physics, const Pose& X_WV) const {
   const Pose X_WB = base_pose(X_WV);
   // The ends of joints that are in the world count, too.

@@ -23,10 +23,11 @@ class Mechanism {
   int group() const { return group_; }
   /// Returns the first body, which carries the frame of the vehicle or object.
   Body& base() const { return *bodies_.front().second; }
+  // Products of poses in a header would be compiled again, for seconds, in every source that includes it.
   /// Pose of the frame of the vehicle or object.
-  Pose X_WV() const { return base().X_WB() * X_BV_; }
+  Pose X_WV() const;
   /// Pose of the first body for a pose of the frame; equal to it, to the last bit, when both frames are the same.
-  Pose base_pose(const Pose& X_WV) const { return same_frame_ ? X_WV : X_WV * X_BV_.inverse(); }
+  Pose base_pose(const Pose& X_WV) const;
   /// Puts all bodies somewhere, as they are to each other, at rest.
   void place(PhysicsWorld& physics, const Pose& X_WV) const;
 
