@@ -12,8 +12,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "experiment/bug_report/tar_file.hpp"
 #include "experiment/files/scratch_directory.hpp"
-#include "experiment/files/tar_file.hpp"
 #include "experiment/results/run_record.hpp"
 #include "experiment/run/version.hpp"
 #include "experiment/snapshot/record_tail.hpp"

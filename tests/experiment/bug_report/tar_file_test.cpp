@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "experiment/files/tar_file.hpp"
+#include "experiment/bug_report/tar_file.hpp"
 
 #include <archive.h>
 #include <archive_entry.h>
