@@ -89,14 +89,19 @@ bool in_water(const World& world, const Vehicle& vehicle, const VehicleConfig& c
   });
 }
 
-bool looks_for_bottom(const Vehicle& vehicle) {
-  return std::any_of(vehicle.devices().begin(), vehicle.devices().end(), [](const MountedDevice* device) {
-    return device->casts_rays() || (device->senses() && device->sensor()->needs_bottom());
+bool looks_for_bottom(const World& world, const Vehicle& vehicle) {
+  return std::any_of(vehicle.devices().begin(), vehicle.devices().end(), [&](const MountedDevice* device) {
+    if (device->senses() && device->sensor()->needs_bottom()) return true;
+    if (!device->casts_rays()) return false;
+    // What casts rays in the air above the water, such as a radar or a lidar on a mast, looks around.
+    const DeviceConfig& config = device->config();
+    const Body& carrier = config.body.empty() ? vehicle.base() : vehicle.body(config.body);
+    return world.medium().in_water(carrier.X_WB() * config.position_m);
   });
 }
 
 bool over_nothing(const World& world, const Vehicle& vehicle) {
-  if (!looks_for_bottom(vehicle) || !in_water(world, vehicle, vehicle.config())) return false;
+  if (!looks_for_bottom(world, vehicle) || !in_water(world, vehicle, vehicle.config())) return false;
   RayFilter others;
   others.exclude_group = vehicle.group();
   return !world.scene().cast(vehicle.X_WV().translation(), -Vector3d::UnitZ(), deepest_m, others);

@@ -22,7 +22,7 @@ std::string depth_fault(const World& world, const Eigen::Vector2d& p_W, double d
 void warn_of_plans(const World& world, const Vehicle& vehicle, Warnings& warnings);
 
 /// Returns a warning when vehicles in or on water have no bottom below them and a device that needs one, because it
-/// casts rays or declares it (Sensor::needs_bottom).
+/// casts rays under water or declares it (Sensor::needs_bottom).
 std::vector<std::string> bottom_warnings(const World& world);
 /// Returns the same for one vehicle.
 std::vector<std::string> bottom_warnings(const World& world, const Vehicle& vehicle);

@@ -75,6 +75,20 @@ vehicles:
   EXPECT_EQ(warnings[0], "there is no bottom below vehicle 'auv1': downward-looking sensors there detect nothing");
 }
 
+TEST(Shore, SaysNothingOfTheBottomForWhatLooksAroundAboveTheWater) {
+  const auto warnings_at = [](const std::string& height_m) {
+    TestWorld test(
+        "shoal: 1\nmedium: {water: {}}\n"
+        "vehicles:\n  - name: boat\n    model:\n      shoal: 1\n      vehicle: boat\n"
+        "      bodies: [{name: hull, parts: [{shape: box, size_m: [2, 1, 0.4], density_kgpm3: 500}]}]\n"
+        "      devices: [{name: lidar, type: lidar, position_m: [0, 0, " +
+        height_m + "]}]\n");
+    return sim::bottom_warnings(test.world).size();
+  };
+  EXPECT_EQ(warnings_at("1.5"), 0u);
+  EXPECT_EQ(warnings_at("-0.3"), 1u);
+}
+
 TEST(Shore, SaysThatThereIsNoBottomBelowANewcomerToo) {
   TestWorld test(
       "shoal: 1\nmedium: {water: {}}\n"
