@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <deque>
 #include <limits>
 #include <stdexcept>
 
@@ -43,17 +44,18 @@ class Chosen {
     // Keep the message nearest to the choice.
     const double away_s = choice_.at_s ? std::abs(last_s_ - *choice_.at_s) : 0;
     const bool desired = choice_.number ? number == *choice_.number
-                         : choice_.at_s ? payloads_.empty() || away_s < away_s_
+                         : choice_.at_s ? number == 0 || away_s < away_s_
                                         : true;
+    if (is_drawn_with_those_before(type)) keep_turn(event.payload, desired);
     if (!desired) return;
-    payloads_.assign(1, event.payload);
+    if (!is_drawn_with_those_before(type)) payloads_.assign(1, event.payload);
     number_ = number;
     chosen_s_ = last_s_;
     away_s_ = away_s;
   }
 
-  /// Throws when there is no such message.
-  const std::vector<sim::Bytes>& payloads(const std::vector<std::string>& problems) const {
+  /// Returns the chosen message, the last one of those that are drawn with it.  Throws when there is no such message.
+  std::vector<sim::Bytes> payloads(const std::vector<std::string>& problems) const {
     if (count_ == 0)
       throw std::runtime_error("no event on channel '" + channel_ + "'; " +
                                (problems.empty() ? "see shoal log info" : problems.back()));
@@ -62,11 +64,12 @@ class Chosen {
         throw std::runtime_error("all its messages are drawn; --number and --at choose among images, clouds and scans");
       return payloads_;
     }
-    if (payloads_.empty())
+    if (payloads_.empty() && !is_last_desired_)
       throw std::runtime_error(fmt::format("there is no message {}; there are {}, from 0", *choice_.number, count_));
     if (choice_.at_s && (*choice_.at_s < first_s_ - slack_s() || *choice_.at_s > last_s_ + slack_s()))
       throw std::runtime_error(fmt::format("there is no message at {:g} s; they are from {:.3f} to {:.3f} s",
                                            *choice_.at_s, first_s_, last_s_));
+    if (is_last_desired_) return {recent_.begin(), recent_.end()};
     return payloads_;
   }
 
@@ -78,6 +81,19 @@ class Chosen {
   }
 
  private:
+  /// Keeps what may be drawn with the chosen message: those before it, at most 64 MB.
+  void keep_turn(const sim::Bytes& payload, bool desired) {
+    constexpr std::size_t max_bytes = 64'000'000;
+    if (!desired && is_last_desired_) payloads_.assign(recent_.begin(), recent_.end());
+    recent_.push_back(payload);
+    recent_bytes_ += payload.size();
+    while (recent_bytes_ > max_bytes && recent_.size() > 1) {
+      recent_bytes_ -= recent_.front().size();
+      recent_.pop_front();
+    }
+    is_last_desired_ = desired;
+  }
+
   void learn_start(const bridges::LogEvent& event) {
     try {
       first_utime_ = shoal::decode<shoal::sim_info_t>(event.payload, shoal::Finite::any).epoch_utime;
@@ -102,6 +118,9 @@ class Chosen {
   std::int64_t type_ = 0;
   double first_s_ = 1, last_s_ = 0, chosen_s_ = 0, away_s_ = 0;
   std::vector<sim::Bytes> payloads_;
+  std::deque<sim::Bytes> recent_;  ///< up to the last message
+  std::size_t recent_bytes_ = 0;
+  bool is_last_desired_ = false;  ///< the last message of recent_ is the chosen one
 };
 
 }  // namespace
@@ -111,7 +130,7 @@ LogImage draw_log(const std::string& log, const std::string& channel, const std:
   bridges::EventLogReader reader(log);
   Chosen chosen(channel, choice);
   while (const auto event = reader.next()) chosen.take(*event);
-  const std::vector<sim::Bytes>& payloads = chosen.payloads(reader.problems());
+  const std::vector<sim::Bytes> payloads = chosen.payloads(reader.problems());
   if (chosen.type() == shoal::image_t::getHash())
     sim::write_image(png, displayable(shoal::decode<shoal::image_t>(payloads.front(), shoal::Finite::any)));
   else

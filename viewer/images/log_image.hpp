@@ -24,13 +24,14 @@ struct LogImage {
 };
 
 /// Draws the recording of a sensor on a channel of an LCM event log, as a PNG file:
-///   image_t         one image of a camera: color, grey, JPEG and PNG unchanged; depth on a logarithmic scale, near is
 ///   image_t         one image of a camera: color, grey, JPEG and PNG unchanged; depth on a logarithmic scale, where
 ///                   near is bright; labels in one color each
 ///   side_scan_t     all lines, one above the other, port on the left, over slant range
 ///   multibeam_t     all pings, one above the other, colored by depth
 ///   point_cloud_t   one turn, seen from above, colored by height
 ///   planar_lidar_t  one scan, seen from above
+///   sonar_image_t   one image, seen from above
+///   radar_sector_t  the turn of the antenna that ends with the message, seen from above
 /// All but the first are plotted by gnuplot.  Simulated time counts from the start of the run, which `sim.info` in the
 /// log contains; without it, from the first event.  Throws std::runtime_error with the reason.
 LogImage draw_log(const std::string& log, const std::string& channel, const std::string& png,
@@ -44,7 +45,11 @@ sim::Image8 displayable(const shoal::image_t& message);
 /// which each message is one image.
 bool are_all_drawn(std::int64_t fingerprint);
 
-/// Plots a recording of a range sensor with gnuplot, as a PNG file: all payloads where are_all_drawn(), else the first.
+/// Returns true for types of which the messages before the chosen one complete its image: radar_sector_t.
+bool is_drawn_with_those_before(std::int64_t fingerprint);
+
+/// Plots a recording of a range sensor with gnuplot, as a PNG file: all payloads where are_all_drawn(), the turn that
+/// ends with the last where is_drawn_with_those_before(), else the first.
 /// All are of one type.  Throws std::runtime_error with the reason.
 void draw_ranging(const std::vector<sim::Bytes>& payloads, const std::string& title, const std::string& png);
 

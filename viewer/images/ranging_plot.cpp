@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <stdexcept>
 #include <vector>
 
@@ -15,8 +16,10 @@
 #include "shoal/multibeam_t.hpp"
 #include "shoal/planar_lidar_t.hpp"
 #include "shoal/point_cloud_t.hpp"
+#include "shoal/radar_sector_t.hpp"
 #include "shoal/side_scan_t.hpp"
 #include "shoal/sonar_image_t.hpp"
+#include "sim/base/math.hpp"
 #include "viewer/images/log_image.hpp"
 
 namespace viewer {
@@ -26,6 +29,9 @@ namespace {
 constexpr double max_raster_bytes = 1e9;
 constexpr const char* sonar_palette =
     "set palette defined (0 '#000000', 0.35 '#5a2d0c', 0.7 '#d08030', 1 '#fff0c0') maxcolors 20\nunset colorbox\n";
+constexpr const char* radar_palette =
+    "set palette defined (0 '#000814', 0.3 '#00406a', 0.6 '#20b060', 0.8 '#f0e040', 1 '#ff4020') maxcolors 32\n"
+    "unset colorbox\n";
 constexpr const char* depth_palette =
     "set palette defined (0 '#30123b', 0.25 '#4686fb', 0.5 '#1ae4b6', 0.75 '#faba39', "
     "1 '#7a0403')\nset rmargin at screen 0.8\n";
@@ -162,6 +168,64 @@ Drawing draw(const shoal::planar_lidar_t& scan) {
   return drawing;
 }
 
+/// Spoke of a radar: its azimuth, and its cells in the message.
+struct DrawnSpoke {
+  double azimuth_rad;
+  const std::uint8_t* cells;
+  bool operator<(const DrawnSpoke& other) const { return azimuth_rad < other.azimuth_rad; }
+};
+
+void check_sector(const shoal::radar_sector_t& sector) {
+  check_count("azimuths", sector.azimuths_rad.size(), sector.nspokes);
+  check_count("bytes", sector.data.size(), sector.size);
+  if (sector.ncells < 1 || sector.size != std::int64_t{sector.nspokes} * sector.ncells || !(sector.range_max_m > 0))
+    throw std::runtime_error("the sector has an invalid size");
+}
+
+/// Draws the spokes of the last turn; earlier ones of another range are left out.
+Drawing draw(const std::vector<shoal::radar_sector_t>& sectors) {
+  for (const shoal::radar_sector_t& sector : sectors) check_sector(sector);
+  const int cells = sectors.back().ncells;
+  const double range_m = sectors.back().range_max_m;
+  // The newest first, until the antenna has turned once.
+  std::vector<DrawnSpoke> spokes;
+  double turned_rad = 0;
+  for (auto sector = sectors.rbegin(); sector != sectors.rend(); ++sector) {
+    if (sector->ncells != cells || sector->range_max_m != sectors.back().range_max_m) break;
+    for (int i = sector->nspokes - 1; i >= 0 && turned_rad < 2 * std::numbers::pi; --i) {
+      const double azimuth_rad = sector->azimuths_rad[static_cast<std::size_t>(i)];
+      if (!spokes.empty()) turned_rad += std::abs(sim::wrap_angle(azimuth_rad - spokes.back().azimuth_rad));
+      spokes.push_back(
+          {azimuth_rad, sector->data.data() + static_cast<std::size_t>(i) * static_cast<std::size_t>(cells)});
+    }
+  }
+  if (spokes.empty()) return {};
+  const double step_rad = spokes.size() > 1 ? turned_rad / static_cast<double>(spokes.size() - 1) : 0.05;
+  std::sort(spokes.begin(), spokes.end());
+  // x of the image points to the right, which is -y of the sensor; up is forward.
+  constexpr int width = 500;
+  const double pixel_m = 2 * range_m / width;
+  Drawing drawing;
+  for (int row = 0; row < width; ++row)
+    for (int column = 0; column < width; ++column) {
+      const double right_m = (column + 0.5) * pixel_m - range_m, forward_m = (row + 0.5) * pixel_m - range_m;
+      const double cell = std::floor(std::hypot(right_m, forward_m) / range_m * cells);
+      const double azimuth_rad = std::atan2(-right_m, forward_m);
+      auto next = std::lower_bound(spokes.begin(), spokes.end(), DrawnSpoke{azimuth_rad, nullptr});
+      const DrawnSpoke& after = next == spokes.end() ? spokes.front() : *next;
+      const DrawnSpoke& before = next == spokes.begin() ? spokes.back() : *std::prev(next);
+      const auto away_rad = [&](const DrawnSpoke& spoke) {
+        return std::abs(sim::wrap_angle(spoke.azimuth_rad - azimuth_rad));
+      };
+      const DrawnSpoke& nearest = away_rad(after) < away_rad(before) ? after : before;
+      const bool inside = cell < cells && away_rad(nearest) <= step_rad;
+      drawing.data += inside ? static_cast<char>(nearest.cells[static_cast<std::size_t>(cell)]) : '\0';
+    }
+  drawing.commands = fmt::format("{}set size ratio -1\nset xlabel 'right (m)'\nset ylabel 'forward (m)'\n{}",
+                                 radar_palette, image_command(width, width, -range_m, -range_m, pixel_m, pixel_m));
+  return drawing;
+}
+
 Drawing draw(const std::vector<sim::Bytes>& payloads) {
   const std::int64_t type = shoal::fingerprint(payloads.front());
   if (type == shoal::sonar_image_t::getHash()) return draw(only<shoal::sonar_image_t>(payloads));
@@ -169,15 +233,20 @@ Drawing draw(const std::vector<sim::Bytes>& payloads) {
   if (type == shoal::multibeam_t::getHash()) return draw(decode_all<shoal::multibeam_t>(payloads));
   if (type == shoal::point_cloud_t::getHash()) return draw(only<shoal::point_cloud_t>(payloads));
   if (type == shoal::planar_lidar_t::getHash()) return draw(only<shoal::planar_lidar_t>(payloads));
+  if (type == shoal::radar_sector_t::getHash()) return draw(decode_all<shoal::radar_sector_t>(payloads));
   throw std::runtime_error(
-      "its type cannot be drawn; image_t, sonar_image_t, side_scan_t, multibeam_t, point_cloud_t and planar_lidar_t "
-      "can");
+      "its type cannot be drawn; image_t, sonar_image_t, side_scan_t, multibeam_t, point_cloud_t, planar_lidar_t and "
+      "radar_sector_t can");
 }
 
 }  // namespace
 
 bool are_all_drawn(std::int64_t type) {
   return type == shoal::side_scan_t::getHash() || type == shoal::multibeam_t::getHash();
+}
+
+bool is_drawn_with_those_before(std::int64_t type) {
+  return type == shoal::radar_sector_t::getHash();
 }
 
 void draw_ranging(const std::vector<sim::Bytes>& payloads, const std::string& title, const std::string& png) {

@@ -9,9 +9,11 @@
 #include "shoal/multibeam_t.hpp"
 #include "shoal/planar_lidar_t.hpp"
 #include "shoal/point_cloud_t.hpp"
+#include "shoal/radar_sector_t.hpp"
 #include "shoal/side_scan_t.hpp"
 #include "shoal/sonar_image_t.hpp"
 #include "shoal/utime_t.hpp"
+#include "sim/image/image_file.hpp"
 #include "viewer/images/log_image.hpp"
 
 namespace {
@@ -88,6 +90,33 @@ TEST_F(RangingPlot, DrawsMultibeamsPointCloudsAndScans) {
   EXPECT_TRUE(drawn());
   EXPECT_EQ(problem_of(shoal::point_cloud_t{0, 2, {1, 2}, {3, 4}, {5, 6}, {1, 1}, {0, 1}, {-5, 0}}), "");
   EXPECT_EQ(problem_of(shoal::planar_lidar_t{0, 2, {1, 2}, 0, {}, -0.5f, 1}), "");
+}
+
+TEST_F(RangingPlot, DrawsTheTurnOfARadarThatEndsWithTheMessage) {
+  // Four spokes of two cells; the far cell of the spoke to the left is strong.
+  shoal::radar_sector_t sector{};
+  sector.nspokes = 4;
+  sector.ncells = 2;
+  sector.range_max_m = 100;
+  sector.time_offsets_us = {-3, -2, -1, 0};
+  sector.azimuths_rad = {0, -1.5708f, 3.1416f, 1.5708f};
+  sector.size = 8;
+  sector.data = {0, 0, 0, 0, 0, 0, 0, 255};
+  EXPECT_EQ(problem_of(sector), "");
+  const sim::Image8 image = sim::read_image(png());
+  // Means of red in the left and right half, without the axes' labels.
+  const auto red = [&](int from, int to) {
+    double sum = 0;
+    int count = 0;
+    for (int y = image.height / 3; y < 2 * image.height / 3; ++y)
+      for (int x = from; x < to; ++x) sum += image.at(x, y)[0], ++count;
+    return sum / count;
+  };
+  EXPECT_GT(red(image.width / 4, image.width / 2), red(image.width / 2, 3 * image.width / 4) + 20);
+  EXPECT_EQ(problem_of(sector, "s", 1), "");
+  sector.size = 7;
+  sector.data.pop_back();
+  EXPECT_EQ(problem_of(sector), "the sector has an invalid size");
 }
 
 TEST_F(RangingPlot, CountsWhoseProductOverflowsAreNoSize) {

@@ -251,11 +251,13 @@ void add_image_command(CLI::App& app, int& exit_code) {
   at->type_name("S")->check(number_from(0, 1e9).description(""));
   number->type_name("N")->check(whole_from(0, std::numeric_limits<int>::max()).description(""))->excludes(at);
   add_plugin_option(*command);
-  command_line::set_help_end(*command, {{"shoal log image run.lcm auv1.side_scan --png side_scan.png",
-                                         "shoal log image run.lcm rover1.camera --at 12.5 --png seen.png"},
-                                        log_codes,
-                                        {"All side scans or multibeam pings are drawn in one image; for other sensors "
-                                         "one message is drawn.  All except camera images need gnuplot."}});
+  command_line::set_help_end(*command,
+                             {{"shoal log image run.lcm auv1.side_scan --png side_scan.png",
+                               "shoal log image run.lcm rover1.camera --at 12.5 --png seen.png"},
+                              log_codes,
+                              {"All side scans or multibeam pings are drawn in one image, of a radar the turn "
+                               "that ends with the message; for other sensors one message is drawn.  All "
+                               "except camera images need gnuplot."}});
   command->callback([arguments, &exit_code] { exit_code = image(*arguments); });
 }
 
