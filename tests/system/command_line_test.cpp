@@ -9,15 +9,16 @@
 
 #include "tests/system/on_terminal.hpp"
 #include "tests/system/shoal_program.hpp"
+#include "tests/tools/command_line/every_command.hpp"
 
 // What every command of every program owes its users: help, errors, widths, pipes.
 
 namespace {
 
 using namespace system_test;
+using namespace every_command;
 using testing::HasSubstr;
 using testing::Not;
-using Words = std::vector<std::string>;
 
 const Words programs = {"shoal-coop-rover", "shoal-coop-auv", "shoal-coop-craft", "shoal-coop-station", "shoal-balance",
                         "shoal-ball-chase", "shoal-ball-dog", "shoal-mapper",     "shoal-patrol",       "shoal-ranger",
@@ -41,85 +42,25 @@ Ended run_shell(const std::string& line) {
   return {exit_code, program.output(), program.errors()};
 }
 
-Words lines_of(const std::string& text) {
-  Words lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
-}
-
 std::size_t max_line(const std::string& text) {
   std::size_t longest = 0;
   for (const std::string& line : lines_of(text)) longest = std::max(longest, line.size());
   return longest;
 }
 
-/// The first words of the lines of a section of a help, such as its commands or options.
-Words names_in(const std::string& help, const std::string& section) {
-  Words names;
-  bool inside = false;
-  for (const std::string& line : lines_of(help)) {
-    if (!line.empty() && line[0] != ' ') inside = line.starts_with(section) && line.back() == ':';
-    if (inside && line.size() > 2 && line.starts_with("  ") && line[2] != ' ') names.push_back(line.substr(2));
-  }
-  return names;
+Tried tried(const std::string& program, const Words& arguments) {
+  const Ended ended = run_program(program, arguments, {"COLUMNS=80"});
+  return {ended.exit_code, ended.output, ended.errors};
 }
 
-std::string first_word(const std::string& text) {
-  return text.substr(0, text.find(' '));
-}
-
-struct Command {
-  std::string program;
-  Words words;  ///< `log`, `info`
-  std::string help;
-  std::string path() const {
-    std::string text = program;
-    for (const std::string& word : words) text += " " + word;
-    return text;
-  }
-};
-
-/// Every command of every program, found by way of the helps.
-std::vector<Command> all_commands() {
-  std::vector<Command> commands;
-  const std::function<void(const std::string&, const Words&)> add = [&](const std::string& program,
-                                                                        const Words& words) {
-    Words arguments = words;
-    arguments.push_back("--help");
-    const Ended ended = run_program(program, arguments, {"COLUMNS=80"});
-    EXPECT_EQ(ended.exit_code, 0) << program;
-    EXPECT_EQ(ended.errors, "");
-    commands.push_back({program, words, ended.output});
-    for (const std::string& name : names_in(ended.output, "Commands")) {
-      Words more = words;
-      more.push_back(first_word(name));
-      add(program, more);
-    }
-  };
-  add("shoal", {});
-  for (const std::string& program : programs) add(program, {});
-  return commands;
-}
-
-/// One option of a help: `--duration` and `S`, or `--quiet` and nothing.
-struct OptionLine {
-  std::string name, value;
-};
-
-std::vector<OptionLine> options_of(const Command& command) {
-  static const std::regex pattern("(?:-\\w, )?(--[\\w-]+)(?: ([^ ]+))?(?:  .*)?");
-  std::vector<OptionLine> options;
-  for (const std::string& line : names_in(command.help, "Options")) {
-    std::smatch match;
-    EXPECT_TRUE(std::regex_match(line, match, pattern)) << command.path() << ": " << line;
-    if (!match.empty() && match[1] != "--help" && match[1] != "--version") options.push_back({match[1], match[2]});
-  }
-  return options;
+std::vector<Command> commands_of_all_programs() {
+  Words all = programs;
+  all.insert(all.begin(), "shoal");
+  return all_commands(tried, all);
 }
 
 TEST(CommandLine, HelpOfEveryCommandIsInOurWords) {
-  const std::vector<Command> commands = all_commands();
+  const std::vector<Command> commands = commands_of_all_programs();
   EXPECT_GT(commands.size(), 25u);
   static const std::regex inside(
       "FLOAT|\\bU?INT\\b|REQUIRED|TEXT \\.\\.\\.|\\{(true|false)\\}|SUBCOMMAND|Positionals|Needs:|Excludes:|Env:|"
@@ -153,7 +94,7 @@ TEST(CommandLine, HelpFitsTheWidthThatIsAskedFor) {
 }
 
 TEST(CommandLine, EveryExampleOfAHelpIsOneThatTheCommandTakes) {
-  for (const Command& command : all_commands()) {
+  for (const Command& command : commands_of_all_programs()) {
     const auto at = command.help.find("\nExample");
     ASSERT_NE(at, std::string::npos);
     std::string text = command.help.substr(at, command.help.find("\nExit codes:") - at);
@@ -235,54 +176,13 @@ TEST(CommandLine, AWorldThatIsGivenForALogIsAnErrorWithTheRightCommand) {
             "'minimal': is a world, but this command shows logs; `shoal run minimal --view` shows its run\n");
 }
 
-TEST(CommandLine, EveryOptionSaysWhatIsWrongWithIt) {
-  static const std::regex inside("FLOAT|\\bU?INT\\b|CLI::|Error|Could not convert|required but|not expected|TEXT");
-  int options = 0;
-  for (const Command& command : all_commands())
-    for (const OptionLine& option : options_of(command)) {
-      ++options;
-      std::vector<std::pair<Words, std::string>> wrong;
-      if (option.value.empty()) {
-        wrong.push_back({{option.name + "=maybe"}, option.name + " takes no value, got 'maybe'"});
-      } else {
-        wrong.push_back({{option.name}, option.name + " needs a value: " + option.name + " " + option.value});
-        wrong.push_back({{option.name, "--help-me"}, option.name + " needs a value"});
-      }
-      for (const auto& [more, error] : wrong) {
-        Words arguments = command.words;
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        const Ended ended = run_program(command.program, arguments);
-        EXPECT_EQ(ended.exit_code, 2) << command.path() << ' ' << option.name;
-        EXPECT_THAT(ended.errors, testing::StartsWith(command.path() + ": " + error));
-        EXPECT_THAT(ended.errors, testing::EndsWith("\nSee `" + command.path() + " --help`.\n"));
-        std::smatch found;
-        EXPECT_FALSE(std::regex_search(ended.errors, found, inside)) << ended.errors;
-      }
-    }
-  EXPECT_GT(options, 150);
+// Those of each command of shoal are tried in tests/tools/shoal/commands, without a process for each.
+TEST(CommandLine, EveryOptionOfTheOtherProgramsSaysWhatIsWrongWithIt) {
+  EXPECT_GT(expect_that_options_say_what_is_wrong(tried, all_commands(tried, programs)), 80);
 }
 
-TEST(CommandLine, NumbersOutOfRangeAndNoNumbersAreRefusedByEveryOptionThatHasARange) {
-  static const std::regex range("\\((?:each )?from ");
-  int options = 0;
-  for (const Command& command : all_commands()) {
-    // Each option with its meaning on one line.
-    const std::string text = std::regex_replace(command.help, std::regex("\n {8,}"), " ");
-    for (const std::string& line : names_in(text, "Options")) {
-      if (!std::regex_search(line, range)) continue;
-      ++options;
-      for (const char* value : {"abc", "nan", "1e99", ""}) {
-        Words arguments = command.words;
-        arguments.push_back(first_word(line) + "=" + value);
-        const Ended ended = run_program(command.program, arguments);
-        EXPECT_EQ(ended.exit_code, 2) << command.path() << ' ' << line;
-        // What is required and missing may be said first.
-        EXPECT_THAT(ended.errors, testing::AnyOf(HasSubstr("must be"), HasSubstr("is required"))) << line;
-        EXPECT_EQ(lines_of(ended.errors).size(), 2u) << ended.errors;
-      }
-    }
-  }
-  EXPECT_GT(options, 60);
+TEST(CommandLine, NumbersOutOfRangeAreRefusedByTheOtherPrograms) {
+  EXPECT_GT(expect_that_ranges_are_kept(tried, all_commands(tried, programs)), 10);
 }
 
 TEST(CommandLine, APipeThatIsClosedEndsEveryCommandQuietly) {
