@@ -269,9 +269,14 @@ void DdsParticipant::remove(Endpoint endpoint) {
   parts_.erase(part);
 }
 
-bool DdsParticipant::has_readers(Endpoint writer) const {
+std::size_t DdsParticipant::readers_of(Endpoint writer) const {
   dds_publication_matched_status_t status{};
-  return dds_get_publication_matched_status(writer, &status) == DDS_RETCODE_OK && status.current_count > 0;
+  return dds_get_publication_matched_status(writer, &status) == DDS_RETCODE_OK ? status.current_count : 0;
+}
+
+std::size_t DdsParticipant::writers_to(Endpoint reader) const {
+  dds_subscription_matched_status_t status{};
+  return dds_get_subscription_matched_status(reader, &status) == DDS_RETCODE_OK ? status.current_count : 0;
 }
 
 bool DdsParticipant::write(Endpoint writer, std::span<const std::byte> bytes) {

@@ -43,7 +43,10 @@ class DdsParticipant {
   Endpoint add_reader(const std::string& topic, const std::string& type, const DdsQos& qos);
   void remove(Endpoint endpoint);
 
-  bool has_readers(Endpoint writer) const;
+  /// Return the number of endpoints on the other side that are known.
+  std::size_t readers_of(Endpoint writer) const;
+  std::size_t writers_to(Endpoint reader) const;
+  bool has_readers(Endpoint writer) const { return readers_of(writer) > 0; }
   /// Writes a message, which begins with the four bytes of its representation; waits at most 0.1 s for slow readers.
   /// Returns false when DDS refused it.
   bool write(Endpoint writer, std::span<const std::byte> bytes);

@@ -62,12 +62,11 @@ Ros2Door::Ros2Door(const Options& options)
       client_("shoal-ros2-" + std::to_string(getpid())),
       lcm_(options.lcm_url),
       participant_(options.network, "enclave=/;"),
-      services_(
-          {[this](const std::string& command, double value, const std::string& text) {
-             return ask(command, value, text);
-           },
-           [this](std::size_t service, std::span<const std::byte> cdr) { participant_.write(answers_[service], cdr); }},
-          options.controls) {
+      services_({[this](const std::string& command, double value, const std::string& text) {
+                   return ask(command, value, text);
+                 },
+                 [this](std::size_t service, std::span<const std::byte> cdr) { answer(service, cdr); }},
+                options.controls) {
   const auto key = options.run.empty() ? run_key_from_environment() : read_run_key(options.run);
   if (key) signer_.emplace(*key, client_);
   graph_ = participant_.add_writer("ros_discovery_info", "rmw_dds_common::msg::dds_::ParticipantEntitiesInfo_",
@@ -110,13 +109,15 @@ void Ros2Door::run(const std::function<bool()>& stops) {
 
 void Ros2Door::carry(const std::function<bool()>& stops) {
   WaitWarning no_bus("shoal-ros2: waiting for messages of a run at " + lcm_.url());
+  bool answers_wait = false;
   for (bool heard = false; !stops();) {
-    const auto message = lcm_.next(100ms);
+    const auto message = lcm_.next(answers_wait ? 5ms : 100ms);
     heard = heard || message;
     if (!heard) no_bus.look();
     const std::scoped_lock lock(mutex_);
     if (message) take_message(*message);
     look_after(Clock::now());
+    answers_wait = !waiting_answers_.empty();
   }
 }
 
@@ -154,6 +155,7 @@ void Ros2Door::add_services() {
     const Endpoint reader =
         participant_.add_reader("rq/" + std::string(service.name) + "Request", type + "_Request_", {});
     answers_.push_back(participant_.add_writer("rr/" + std::string(service.name) + "Reply", type + "_Response_", {}));
+    calls_.push_back(reader);
     service_of_.emplace(reader, i);
   }
 }
@@ -263,6 +265,7 @@ std::optional<std::set<std::string>> Ros2Door::report_channels() {
 
 /// Ends calls that wait too long, asks again what was not answered, and tells changes of the graph.
 void Ros2Door::look_after(Clock::time_point now) {
+  if (!waiting_answers_.empty()) send_answers(now);
   if (now < next_look_) return;
   next_look_ = now + 100ms;
   services_.expire(now);
@@ -349,7 +352,6 @@ void Ros2Door::receive() {
   while (const auto readers = participant_.wait()) {
     for (const Endpoint reader : *readers)
       while (const auto cdr = participant_.take(reader)) {
-        await_client(reader);
         const std::scoped_lock lock(mutex_);
         deliver(reader, *cdr);
       }
@@ -361,12 +363,23 @@ void Ros2Door::warn_once(const std::string& topic, const std::string& what) {
   if (warned_.insert(topic).second) std::cerr << "shoal-ros2: " << topic << ": " << what << std::endl;
 }
 
-/// The call of a new client may come before its reader of the responses is known.
-void Ros2Door::await_client(Endpoint reader) const {
-  const auto service = service_of_.find(reader);
-  if (service == service_of_.end()) return;
-  const auto until = Clock::now() + 100ms;
-  while (!participant_.has_readers(answers_[service->second]) && Clock::now() < until) std::this_thread::sleep_for(1ms);
+/// The call of a new client may come before its reader of the answers is known: DDS would not send it what was written
+/// before.  The answer waits until each client that can call can receive it, at most 10 s.
+void Ros2Door::answer(std::size_t service, std::span<const std::byte> cdr) {
+  constexpr std::size_t max_waiting = 1000;
+  waiting_answers_.push_back({service, {cdr.begin(), cdr.end()}, Clock::now() + 10s});
+  if (waiting_answers_.size() > max_waiting) waiting_answers_.front().until = {};
+  send_answers(Clock::now());
+}
+
+void Ros2Door::send_answers(Clock::time_point now) {
+  std::erase_if(waiting_answers_, [&](const WaitingAnswer& waiting) {
+    const Endpoint writer = answers_[waiting.service];
+    if (now < waiting.until && participant_.readers_of(writer) < participant_.writers_to(calls_[waiting.service]))
+      return false;
+    participant_.write(writer, waiting.cdr);
+    return true;
+  });
 }
 
 void Ros2Door::deliver(Endpoint reader, std::span<const std::byte> cdr) {

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -68,6 +69,13 @@ class Ros2Door final : private TopicSink {
     std::vector<Endpoint> readers;
   };
 
+  /// Answer to a client whose reader is not known yet.
+  struct WaitingAnswer {
+    std::size_t service;
+    std::vector<std::byte> cdr;
+    Clock::time_point until;
+  };
+
   bool wants(const Topic& topic) override;
   bool take(const Topic& topic, std::span<const std::byte> bytes) override;
 
@@ -87,7 +95,8 @@ class Ros2Door final : private TopicSink {
   void publish_graph();
   std::int32_t ask(const std::string& command, double value, const std::string& text);
   void receive();
-  void await_client(Endpoint reader) const;
+  void answer(std::size_t service, std::span<const std::byte> cdr);
+  void send_answers(Clock::time_point now);
   void warn_once(const std::string& topic, const std::string& what);
   void deliver(Endpoint reader, std::span<const std::byte> cdr);
   void deliver(const CommandTopic& command, std::span<const std::byte> cdr);
@@ -103,7 +112,8 @@ class Ros2Door final : private TopicSink {
   std::vector<Endpoint> writers_;  // by number of the topic; 0: none yet
   std::map<Endpoint, CommandTopic> commands_;
   std::map<Endpoint, std::size_t> service_of_;
-  std::vector<Endpoint> answers_;  // writers of the services
+  std::vector<Endpoint> calls_, answers_;  // readers and writers of the services
+  std::deque<WaitingAnswer> waiting_answers_;
   std::map<std::string, Vehicle, std::less<>> vehicles_;
   std::set<std::string, std::less<>> command_channels_, warned_;
   std::map<std::string, double, std::less<>> rates_hz_;  // of the reports, by channel; 0: each step

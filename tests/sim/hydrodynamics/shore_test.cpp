@@ -79,7 +79,7 @@ TEST(Shore, SaysNothingOfTheBottomForWhatLooksAroundAboveTheWater) {
   const auto warnings_at = [](const std::string& height_m) {
     TestWorld test(
         "shoal: 1\nmedium: {water: {}}\n"
-        "vehicles:\n  - name: boat\n    model:\n      shoal: 1\n      vehicle: boat\n"
+        "vehicles:\n  - name: boat\n    position_m: [0, 0, -0.1]\n    model:\n      shoal: 1\n      vehicle: boat\n"
         "      bodies: [{name: hull, parts: [{shape: box, size_m: [2, 1, 0.4], density_kgpm3: 500}]}]\n"
         "      devices: [{name: lidar, type: lidar, position_m: [0, 0, " +
         height_m + "]}]\n");

@@ -48,7 +48,6 @@ bool act_as_node(const DdsNetwork& network) {
   node.remove(graph);
 
   const std::string service = "simulation_interfaces::srv::dds_::StepSimulation";
-  const auto answers = node.add_reader("rr/shoal/step_simulationReply", service + "_Response_", {});
   const auto calls = node.add_writer("rq/shoal/step_simulationRequest", service + "_Request_", {});
   if (!lcm_test::await([&] { return node.has_readers(calls); })) return false;
   std::vector<std::byte> request;
@@ -57,6 +56,9 @@ bool act_as_node(const DdsNetwork& network) {
   out.put(std::int64_t{22});
   out.put(std::uint64_t{1});
   node.write(calls, request);
+  // On a busy machine the reader of the answers is known long after the call.
+  std::this_thread::sleep_for(300ms);
+  const auto answers = node.add_reader("rr/shoal/step_simulationReply", service + "_Response_", {});
   const auto answer = next(node, answers);
   CdrReader response(answer);
   const bool is_refused = response.get<std::uint64_t>() == 11 && response.get<std::int64_t>() == 22 &&
