@@ -6,9 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <deque>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "bridges/log/event_log.hpp"
 #include "devices/ranging/camera.hpp"
@@ -44,18 +45,23 @@ class Chosen {
     // Keep the message nearest to the choice.
     const double away_s = choice_.at_s ? std::abs(last_s_ - *choice_.at_s) : 0;
     const bool desired = choice_.number ? number == *choice_.number
-                         : choice_.at_s ? number == 0 || away_s < away_s_
+                         : choice_.at_s ? payloads_.empty() || away_s < away_s_
                                         : true;
-    if (is_drawn_with_those_before(type)) keep_turn(event.payload, desired);
+    if (is_drawn_with_those_before(type)) keep(since_, event.payload);
     if (!desired) return;
-    if (!is_drawn_with_those_before(type)) payloads_.assign(1, event.payload);
+    if (is_drawn_with_those_before(type)) {
+      for (sim::Bytes& payload : since_) keep(payloads_, std::move(payload));
+      since_.clear();
+    } else {
+      payloads_.assign(1, event.payload);
+    }
     number_ = number;
     chosen_s_ = last_s_;
     away_s_ = away_s;
   }
 
   /// Returns the chosen message, the last one of those that are drawn with it.  Throws when there is no such message.
-  std::vector<sim::Bytes> payloads(const std::vector<std::string>& problems) const {
+  const std::vector<sim::Bytes>& payloads(const std::vector<std::string>& problems) const {
     if (count_ == 0)
       throw std::runtime_error("no event on channel '" + channel_ + "'; " +
                                (problems.empty() ? "see shoal log info" : problems.back()));
@@ -64,12 +70,11 @@ class Chosen {
         throw std::runtime_error("all its messages are drawn; --number and --at choose among images, clouds and scans");
       return payloads_;
     }
-    if (payloads_.empty() && !is_last_desired_)
+    if (payloads_.empty())
       throw std::runtime_error(fmt::format("there is no message {}; there are {}, from 0", *choice_.number, count_));
     if (choice_.at_s && (*choice_.at_s < first_s_ - slack_s() || *choice_.at_s > last_s_ + slack_s()))
       throw std::runtime_error(fmt::format("there is no message at {:g} s; they are from {:.3f} to {:.3f} s",
                                            *choice_.at_s, first_s_, last_s_));
-    if (is_last_desired_) return {recent_.begin(), recent_.end()};
     return payloads_;
   }
 
@@ -81,17 +86,14 @@ class Chosen {
   }
 
  private:
-  /// Keeps what may be drawn with the chosen message: those before it, at most 64 MB.
-  void keep_turn(const sim::Bytes& payload, bool desired) {
+  /// Appends a message to those that are drawn together, of which the last 64 MB are kept.
+  static void keep(std::vector<sim::Bytes>& kept, sim::Bytes payload) {
     constexpr std::size_t max_bytes = 64'000'000;
-    if (!desired && is_last_desired_) payloads_.assign(recent_.begin(), recent_.end());
-    recent_.push_back(payload);
-    recent_bytes_ += payload.size();
-    while (recent_bytes_ > max_bytes && recent_.size() > 1) {
-      recent_bytes_ -= recent_.front().size();
-      recent_.pop_front();
-    }
-    is_last_desired_ = desired;
+    kept.push_back(std::move(payload));
+    auto first = kept.end();
+    std::size_t bytes = 0;
+    while (first != kept.begin() && (bytes += std::prev(first)->size()) <= max_bytes) --first;
+    kept.erase(kept.begin(), first == kept.end() ? std::prev(first) : first);
   }
 
   void learn_start(const bridges::LogEvent& event) {
@@ -118,9 +120,7 @@ class Chosen {
   std::int64_t type_ = 0;
   double first_s_ = 1, last_s_ = 0, chosen_s_ = 0, away_s_ = 0;
   std::vector<sim::Bytes> payloads_;
-  std::deque<sim::Bytes> recent_;  ///< up to the last message
-  std::size_t recent_bytes_ = 0;
-  bool is_last_desired_ = false;  ///< the last message of recent_ is the chosen one
+  std::vector<sim::Bytes> since_;  ///< after the last of payloads_, where those before the chosen one are drawn, too
 };
 
 }  // namespace
@@ -130,7 +130,7 @@ LogImage draw_log(const std::string& log, const std::string& channel, const std:
   bridges::EventLogReader reader(log);
   Chosen chosen(channel, choice);
   while (const auto event = reader.next()) chosen.take(*event);
-  const std::vector<sim::Bytes> payloads = chosen.payloads(reader.problems());
+  const std::vector<sim::Bytes>& payloads = chosen.payloads(reader.problems());
   if (chosen.type() == shoal::image_t::getHash())
     sim::write_image(png, displayable(shoal::decode<shoal::image_t>(payloads.front(), shoal::Finite::any)));
   else
