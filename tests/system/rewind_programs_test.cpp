@@ -30,13 +30,6 @@ std::vector<std::string> mission(const RewoundMission& of, const std::vector<std
   return run;
 }
 
-/// Lets the run, which is paused, continue to a time; control() waits until the simulator listens.
-void run_until(const std::string& time_s) {
-  const Ended until = control({"until", "--value", time_s});
-  EXPECT_EQ(until.exit_code, 0) << until.errors;
-  EXPECT_TRUE(await([] { return control({"where"}).output.find(", paused") != std::string::npos; }, timeout));
-}
-
 /// Runs a world to its end, and goes back on the way: from the first time by the second, and once more from the third
 /// by the fourth.
 Ended run_with_two_rewinds(const RewoundMission& of, const std::string& results) {

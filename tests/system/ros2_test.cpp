@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <thread>
@@ -77,16 +78,19 @@ class Ros2Test : public testing::Test {
     EXPECT_EQ(door_->wait(), 143);
     EXPECT_THAT(door_->errors(), HasSubstr("on this machine only"));
   }
-  /// A run with a node in lockstep, to its end; returns its hash.
-  std::string run_in_lockstep() {
+  /// A run with a node in lockstep, to its end, which something happens to at 1 s; returns its hash.
+  std::string run_in_lockstep(const std::function<void(std::unique_ptr<Program>& pilot)>& happens = {}) {
     start_door({"--lockstep", "pilot", "--period-s", "0.05"});
-    const auto pilot = judge({"lockstep", "pilot", "rover1"});
-    const auto world = run("duration_s: 3, speed: max", {"--await", "shoal-ros2"});
+    auto pilot = judge({"lockstep", "pilot", "rover1"});
+    const auto world = run("duration_s: 3, speed: max", {"--await", "shoal-ros2", "--paused"});
+    run_until("1");
+    if (happens) happens(pilot);
+    control({"resume"});
     EXPECT_EQ(world->wait(), 0) << world->errors() << door_->errors() << pilot->errors();
     EXPECT_EQ(pilot->wait(), 0) << pilot->output() << pilot->errors() << door_->errors();
     EXPECT_EQ(door_->wait(), 0) << door_->errors();
     EXPECT_THAT(pilot->output(), testing::AllOf(HasSubstr(" ticks, x "), testing::Not(HasSubstr("x 0 m"))));
-    return run_hash_in({0, world->output(), world->errors()}) + pilot->output();
+    return run_hash_in({0, world->output(), world->errors()});
   }
 
   ScratchFolder folder_;
@@ -125,6 +129,36 @@ TEST_F(Ros2Test, ImagesOf640By480At30HzArriveInOrder) {
 
 TEST_F(Ros2Test, RunsWithANodeInLockstepAreEqual) {
   EXPECT_EQ(run_in_lockstep(), run_in_lockstep());
+}
+
+TEST_F(Ros2Test, ALockstepThatIsRewoundEndsAsOneThatNeverWentBack) {
+  const std::string straight = run_in_lockstep();
+  const auto goes_back = [](std::unique_ptr<Program>&) {
+    const Ended back = control({"rewind", "--value", "0.6"});
+    EXPECT_EQ(back.exit_code, 0) << back.errors;
+  };
+  EXPECT_EQ(run_in_lockstep(goes_back), straight);
+}
+
+TEST_F(Ros2Test, ANodeThatIsKilledAndStartedAgainTakesUpItsLockstep) {
+  const std::string straight = run_in_lockstep();
+  const auto dies = [this](std::unique_ptr<Program>& pilot) {
+    pilot->send_signal(SIGKILL);
+    pilot->wait();
+    pilot = judge({"lockstep", "pilot", "rover1"});
+  };
+  EXPECT_EQ(run_in_lockstep(dies), straight);
+}
+
+TEST_F(Ros2Test, MessagesOfOtherProgramsArriveBesideALockstep) {
+  start_door({"--lockstep", "pilot"});
+  const auto pilot = judge({"lockstep", "pilot", "rover1"});
+  const auto world = run("duration_s: forever, speed: 1", {"--await", "shoal-ros2"});
+  const auto counter = judge({"imu", "/v/imu/imu", "100"});
+  publish(*counter, "v.imu", shoal::imu_t{}, 1ms);
+  EXPECT_EQ(counter->wait(), 0) << counter->output() << counter->errors() << door_->errors();
+  world->send_signal(SIGINT);
+  EXPECT_EQ(world->wait(), 130);
 }
 
 TEST_F(Ros2Test, AClientInTheFormOfRmwCycloneddsStepsTheRun) {

@@ -70,6 +70,10 @@ struct Ended {
 Ended run_shoal(std::vector<std::string> arguments, std::chrono::milliseconds limit = timeout);
 /// `shoal control`; a simulator that is there answers, however busy the machine is.
 Ended control(std::vector<std::string> arguments, const std::string& url = own_url());
+/// Waits until the run stands.
+void await_pause();
+/// Lets a run that is paused continue to a time, and waits until it is there.
+void run_until(const std::string& time_s);
 /// The 16 digits after `state hash`, or what was said instead.
 std::string state_hash_in(const Ended& ended);
 /// The same after `run hash`: equal for equal runs, not only for equal ends.

@@ -155,6 +155,16 @@ std::string run_hash_in(const Ended& ended) {
   return hash_in(ended, "run");
 }
 
+void await_pause() {
+  EXPECT_TRUE(await([] { return control({"where"}).output.find(", paused") != std::string::npos; }, timeout));
+}
+
+void run_until(const std::string& time_s) {
+  const Ended until = control({"until", "--value", time_s});
+  EXPECT_EQ(until.exit_code, 0) << until.errors;
+  await_pause();
+}
+
 bool is_running(pid_t pid) {
   const std::string status = status_of(std::to_string(pid));
   return !status.empty() && status[0] != 'Z';

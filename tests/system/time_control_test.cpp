@@ -60,15 +60,6 @@ struct Live {
     if (std::find(all.begin(), all.end(), "--duration") == all.end()) all.insert(all.end(), {"--duration", "forever"});
     return all;
   }
-  /// Runs to a time and waits until it is there.
-  void run_until(const std::string& time_s) {
-    const Ended ended = control({"until", "--value", time_s});
-    ASSERT_EQ(ended.exit_code, 0) << ended.errors;
-    await_pause();
-  }
-  void await_pause() {
-    EXPECT_TRUE(await([] { return control({"where"}).output.find(", paused") != std::string::npos; }, timeout));
-  }
   static std::string where() {
     const std::string text = control({"where"}).output;
     return text.substr(0, text.find(';'));
@@ -228,12 +219,12 @@ TEST(Rewind, RunAgainIsEqualToARunThatNeverWentBack) {
   const Folder folder;
   const Ended straight = run_shoal({"run", folder.world(), "--bus", "none"});
   Live live(folder, {"--duration", "20", "--record", folder.file("log.lcm")});
-  live.run_until("9.37");
+  run_until("9.37");
   const Ended back = control({"rewind", "--value", "4.2"});
   EXPECT_EQ(back.exit_code, 0) << back.errors;
   EXPECT_EQ(back.output, "step 517, 5.17 s, branch 1, paused\n");
   EXPECT_EQ(back.errors, "paused; continue with `shoal control resume --lcm-url '" + own_url() + "'`\n");
-  live.run_until("12");
+  run_until("12");
   const Ended goes_on = control({"rewind", "run", "--value", "11"});
   EXPECT_EQ(goes_on.exit_code, 0);
   EXPECT_EQ(goes_on.errors, "");
@@ -252,16 +243,16 @@ TEST(Rewind, InputsAndRequestsComeInAgainAtTheSameSteps) {
   const Folder folder;
   Live live(folder);
   bridges::LcmListener listener(own_url());
-  live.run_until("2");
+  run_until("2");
   EXPECT_EQ(control({"spawn", "{name: guest, file: rover.yaml, position_m: [0, 3, 0]}"}).exit_code, 0);
   shoal::twist_command_t forward{};
   forward.forward_mps = 1;
   for (const char* channel : {"r1.drive.cmd", "guest.drive.cmd"}) listener.publish(channel, shoal::encode(forward));
-  live.run_until("4.5");
+  run_until("4.5");
   EXPECT_EQ(control({"do", "{move: {name: ball, position_m: [3, 3, 3]}}"}).exit_code, 0);
-  live.run_until("4.9");
+  run_until("4.9");
   EXPECT_EQ(control({"snapshot", "first"}).exit_code, 0);
-  live.run_until("8");
+  run_until("8");
   const Ended back = control({"rewind", "--value", "3.1"});
   EXPECT_EQ(back.output, "step 490, 4.9 s, branch 1, paused\n") << back.errors;
   EXPECT_EQ(control({"snapshot", "again"}).exit_code, 0);
@@ -275,10 +266,10 @@ TEST(Rewind, ReportsVehiclesThatAreGone) {
   Live live(folder);
   bridges::LcmListener listener(own_url());
   listener.listen("sim.vehicle");
-  live.run_until("2");
+  run_until("2");
   EXPECT_EQ(
       control({"spawn", "{name: guest, file: rover.yaml, position_m: [0, 3, 0]}", "--client", "visitor"}).exit_code, 0);
-  live.run_until("4");
+  run_until("4");
   EXPECT_EQ(control({"rewind", "--value", "3"}).exit_code, 0);
   EXPECT_TRUE(await([&] {
     const auto message = listener.next(100ms);
@@ -292,7 +283,7 @@ TEST(Rewind, ReportsVehiclesThatAreGone) {
 TEST(Rewind, RefusesWhatCannotBeAndSaysSo) {
   const Folder folder;
   Live live(folder, {"--rewind-s", "3"});
-  live.run_until("50");
+  run_until("50");
   // What is kept begins here: a run that is slow keeps fewer snapshots, and may be able to go further back.
   EXPECT_EQ(control({"snapshot", "fifty"}).exit_code, 0);
   EXPECT_EQ(control({"restore", "fifty"}).output, "step 5000, 50 s, branch 1, paused\n");
@@ -335,7 +326,7 @@ TEST(Rewind, FurtherThanTheRunHasComeGoesToItsBegin) {
   Live live(folder);
   EXPECT_THAT(control({"rewind", "--value", "1"}).errors,
               HasSubstr("already at the start of the run: nothing to rewind"));
-  live.run_until("4.7");
+  run_until("4.7");
   EXPECT_EQ(control({"rewind", "--value", "10"}).output, "step 0, 0 s, branch 1, paused\n");
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
 }
@@ -343,7 +334,7 @@ TEST(Rewind, FurtherThanTheRunHasComeGoesToItsBegin) {
 TEST(Time, EveryRequestIsAnsweredWithThePlace) {
   const Folder folder;
   Live live(folder);
-  live.run_until("1");
+  run_until("1");
   EXPECT_EQ(control({"pause"}).output, "step 100, 1 s, branch 0, paused\n");
   EXPECT_EQ(control({"speed", "--value", "0.001"}).output, "step 100, 1 s, branch 0, paused, 0.001 x real time\n");
   EXPECT_EQ(control({"resume"}).output, "step 100, 1 s, branch 0\n");
@@ -356,7 +347,7 @@ TEST(Time, EveryRequestIsAnsweredWithThePlace) {
 TEST(Time, TheReplyToARewindHasTheTimeThereIs) {
   const Folder folder;
   Live live(folder);
-  live.run_until("3");
+  run_until("3");
   bridges::LcmListener listener(own_url());
   listener.listen("sim.control.reply");
   shoal::sim_control_request_t request{};
@@ -389,9 +380,9 @@ TEST(Time, ZeroIsAsFastAsPossibleOnTheCommandLineToo) {
 TEST(Rewind, ABranchWhoseRecordCannotBeMadeLeavesTheRunAsItWas) {
   const Folder folder;
   Live live(folder, {"--overwrite", "--record", folder.file("log.lcm")});
-  live.run_until("5");
+  run_until("5");
   EXPECT_EQ(control({"snapshot", "five"}).exit_code, 0);
-  live.run_until("6");
+  run_until("6");
   const std::string before = Live::where();
   std::filesystem::create_directory(folder.file("log.branch1.lcm"));
   for (const std::vector<std::string>& move :
@@ -403,7 +394,7 @@ TEST(Rewind, ABranchWhoseRecordCannotBeMadeLeavesTheRunAsItWas) {
   }
   std::filesystem::remove(folder.file("log.branch1.lcm"));
   EXPECT_EQ(control({"rewind", "--value", "2"}).output, "step 400, 4 s, branch 1, paused\n");
-  live.run_until("5");
+  run_until("5");
   EXPECT_EQ(control({"snapshot", "again"}).exit_code, 0);
   EXPECT_EQ(hash_of_snapshot(folder.file("snaps/five.snapshot")),
             hash_of_snapshot(folder.file("snaps/again.snapshot")));
@@ -418,20 +409,20 @@ TEST(Restore, ItsRecordsAreRunAgainFromTheFileOn) {
   const Folder folder;
   Live live(folder, {"--record", folder.file("log.lcm")});
   bridges::LcmListener listener(own_url());
-  live.run_until("1");
+  run_until("1");
   shoal::twist_command_t forward{};
   forward.forward_mps = 1;
   listener.publish("r1.drive.cmd", shoal::encode(forward));
   EXPECT_EQ(control({"spawn", "{name: guest, file: rover.yaml, position_m: [0, 3, 0]}"}).exit_code, 0);
-  live.run_until("3");
+  run_until("3");
   EXPECT_EQ(control({"snapshot", "a"}).exit_code, 0);
   EXPECT_EQ(control({"remove", "guest"}).exit_code, 0);
-  live.run_until("3.5");
+  run_until("3.5");
   EXPECT_EQ(control({"restore", "a"}).exit_code, 0);
   listener.publish("guest.drive.cmd", shoal::encode(forward));
-  live.run_until("4");
+  run_until("4");
   EXPECT_EQ(control({"rewind", "--value", "0.5"}).output, "step 350, 3.5 s, branch 2, paused\n");
-  live.run_until("5");
+  run_until("5");
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
   for (const auto& [log, text] : {std::pair("log.lcm", "equal for 350 steps ("),
                                   {"log.branch1.lcm", "equal for 100 steps (from step 300; "},
@@ -453,11 +444,11 @@ TEST(Restore, InTheMiddleOfALockstepMissionOnABusOfItsOwnItsRecordIsRunAgain) {
   Program pilot({built("lockstep_pilot"), "--name", "pilot", "--vehicle", "r1", "--period", "0.1", "--receive",
                  "r1.odometry", "--go-back", "--lcm-url", own_url(1)});
   Live live(folder, {"--record", folder.file("log.lcm"), "--await", "pilot"});
-  live.run_until("3");
+  run_until("3");
   EXPECT_EQ(control({"snapshot", "a"}).exit_code, 0);
-  live.run_until("4");
+  run_until("4");
   EXPECT_EQ(control({"restore", "a"}).output, "step 300, 3 s, branch 1, paused\n");
-  live.run_until("6");
+  run_until("6");
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
   EXPECT_EQ(pilot.wait(), 0) << pilot.output() << pilot.errors();
   for (const auto& [log, text] :
@@ -486,16 +477,16 @@ TEST(Restore, WithLockstepClientsGoesOnlyWhereTheRunHasBeenAndRemembers) {
                 HasSubstr("the lockstep clients (pilot) cannot be restored to a state that they never had"));
     return ended.errors;
   };
-  live.run_until("2");
+  run_until("2");
   EXPECT_EQ(control({"snapshot", "early"}).exit_code, 0);
   EXPECT_THAT(refusal("branch0_step100"), HasSubstr("was not written by this run before step 200, 2 s"));
-  live.run_until("4");
+  run_until("4");
   EXPECT_EQ(control({"snapshot", "later"}).exit_code, 0);
   EXPECT_EQ(control({"rewind", "--value", "1"}).exit_code, 0);
   EXPECT_THAT(refusal("later"), HasSubstr("was not written by this run before step 300, 3 s"));
   EXPECT_EQ(Live::where(), "step 300, 3 s, branch 1, paused");
   EXPECT_EQ(control({"restore", "early"}).output, "step 200, 2 s, branch 2, paused\n");
-  live.run_until("12");
+  run_until("12");
   EXPECT_THAT(refusal("early"), HasSubstr("t = 2 s precedes this run's history"));
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
   EXPECT_EQ(pilot.wait(), 0) << pilot.output() << pilot.errors();
@@ -505,7 +496,7 @@ TEST(Restore, OneThatDoesNotFitLeavesNoBranchBehind) {
   const Folder folder;
   const std::string results = folder.file("results");
   Live live(folder, {"--results", results, "--no-plots"});
-  live.run_until("2");
+  run_until("2");
   EXPECT_EQ(control({"snapshot", "good"}).exit_code, 0);
   // Of the same world, with a state that has bytes too many.
   experiment::Snapshot bad = experiment::read_snapshot(folder.file("snaps/good.snapshot"));
@@ -526,14 +517,14 @@ TEST(Restore, OfALaterTimeBeginsTheTracksAnew) {
   const Folder folder;
   const std::string results = folder.file("results");
   Live live(folder, {"--results", results, "--no-plots"});
-  live.run_until("6");
+  run_until("6");
   EXPECT_EQ(control({"snapshot", "six"}).exit_code, 0);
   EXPECT_EQ(control({"rewind", "--value", "4"}).exit_code, 0);
   EXPECT_EQ(control({"do", "{move: {name: r1, position_m: [5, 5, 0.2]}}"}).exit_code, 0);
-  live.run_until("3");
+  run_until("3");
   EXPECT_EQ(control({"restore", "six"}).exit_code, 0);
   EXPECT_THAT(control({"rewind", "--value", "1"}).errors, HasSubstr("the history starts at 6 s"));
-  live.run_until("8");
+  run_until("8");
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
   const auto first_time = [](const std::string& directory) {
     const std::string text = text_of_file(directory + "/tracks.csv");
@@ -546,13 +537,13 @@ TEST(Restore, OfALaterTimeBeginsTheTracksAnew) {
 TEST(Restore, ContinuesFromAFileAndRefusesAnotherWorldsOne) {
   const Folder folder;
   Live live(folder);
-  live.run_until("3");
+  run_until("3");
   EXPECT_EQ(control({"snapshot", "a"}).exit_code, 0);
-  live.run_until("5");
+  run_until("5");
   EXPECT_EQ(control({"snapshot", "b"}).exit_code, 0);
   const Ended restored = control({"restore", "a"});
   EXPECT_EQ(restored.output, "step 300, 3 s, branch 1, paused\n") << restored.errors;
-  live.run_until("5");
+  run_until("5");
   EXPECT_EQ(control({"snapshot", "c"}).exit_code, 0);
   EXPECT_EQ(hash_of_snapshot(folder.file("snaps/b.snapshot")), hash_of_snapshot(folder.file("snaps/c.snapshot")));
   ASSERT_EQ(run_shoal({"run", folder.world(), "--bus", "none", "--seed", "99", "--duration", "2", "--snapshot-at", "1",
@@ -573,7 +564,7 @@ TEST(Restore, OfAnEarlierFileThanTheRunBeganWithLetsItGoBackThere) {
             0);
   Live live(folder, {"--from", folder.file("snaps") + "/branch0_step500.snapshot"});
   EXPECT_EQ(control({"restore", "branch0_step100"}).output, "step 100, 1 s, branch 1, paused\n");
-  live.run_until("3");
+  run_until("3");
   EXPECT_EQ(control({"rewind", "--value", "0.5"}).output, "step 250, 2.5 s, branch 2, paused\n");
   EXPECT_EQ(control({"rewind", "--value", "9"}).output, "step 100, 1 s, branch 3, paused\n");
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
@@ -582,10 +573,10 @@ TEST(Restore, OfAnEarlierFileThanTheRunBeganWithLetsItGoBackThere) {
 TEST(Until, PausesAtATimeAndWhenAnEventFires) {
   const Folder folder;
   Live live(folder);
-  live.run_until("1.005");
+  run_until("1.005");
   EXPECT_EQ(Live::where(), "step 101, 1.01 s, branch 0, paused");
   EXPECT_EQ(control({"until", "late"}).exit_code, 0);
-  live.await_pause();
+  await_pause();
   // The event fires in the step that begins at 7.25 s.
   EXPECT_EQ(Live::where(), "step 726, 7.26 s, branch 0, paused");
   EXPECT_EQ(control({"step", "--value", "3"}).exit_code, 0);
@@ -597,10 +588,10 @@ TEST(Branch, KeepsTheResultsOfTheOneThatIsLeft) {
   const Folder folder;
   const std::string results = folder.file("results");
   Live live(folder, {"--results", results, "--no-plots"});
-  live.run_until("6");
+  run_until("6");
   EXPECT_EQ(control({"rewind", "--value", "4"}).exit_code, 0);
   EXPECT_EQ(control({"do", "{move: {name: r1, position_m: [5, 5, 0.2]}}"}).exit_code, 0);
-  live.run_until("6");
+  run_until("6");
   EXPECT_EQ(live.quit(), 0) << live.program.errors();
   EXPECT_EQ(summary_value(results, "steps"), "600");
   EXPECT_EQ(summary_value(results, "branch"), "1");

@@ -161,10 +161,14 @@ void Ros2Door::add_services() {
 }
 
 void Ros2Door::take_message(const Received& message) {
+  if (!lockstep_ || !belongs_to_ticks(message.channel)) publish(message);
+}
+
+/// Reports come by the lockstep, in its order.  Until all are known, so may be any other message.
+bool Ros2Door::belongs_to_ticks(const std::string& channel) {
   const auto& ticked = Ros2Lockstep::world_channels;
-  const bool is_ticked =
-      !message.channel.starts_with("sim.") || std::find(ticked.begin(), ticked.end(), message.channel) != ticked.end();
-  if (!lockstep_ || !is_ticked) publish(message);
+  if (channel.starts_with("sim.")) return std::find(ticked.begin(), ticked.end(), channel) != ticked.end();
+  return rates_hz_.contains(channel) || !report_channels();
 }
 
 void Ros2Door::publish(const Received& message) {
@@ -344,7 +348,7 @@ bool Ros2Door::take(const Topic& topic, std::span<const std::byte> bytes) {
   if (!participant_.write(writers_[topic.number], bytes))
     ++counts_.late;  // a node does not wait for it
   else if (is_in_tick_ && !topic.latched)
-    lockstep_->count(topic.name);
+    lockstep_->count(topic.name, static_cast<std::uint32_t>(qos_of(topic).depth));
   return true;
 }
 

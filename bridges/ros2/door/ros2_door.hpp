@@ -83,6 +83,7 @@ class Ros2Door final : private TopicSink {
   void add_lockstep();
   void add_services();
   void take_message(const Received& message);
+  bool belongs_to_ticks(const std::string& channel);
   /// Publishes a message by its topics.
   void publish(const Received& message);
   /// Takes what the door itself needs to know.  Throws shoal::MessageError.

@@ -84,9 +84,9 @@ void Ros2Lockstep::tell(const shoal::sim_tick_t& tick) {
   links_.tell(told);
 }
 
-void Ros2Lockstep::count(const std::string& topic) {
+void Ros2Lockstep::count(const std::string& topic, std::uint32_t depth) {
   const std::scoped_lock lock(mutex_);
-  exchange_.count(topic);
+  exchange_.count(topic, depth);
 }
 
 void Ros2Lockstep::add(const std::string& topic, std::optional<TickExchange::Command> command) {

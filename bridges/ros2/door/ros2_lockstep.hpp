@@ -6,6 +6,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -51,7 +52,7 @@ class Ros2Lockstep {
   void stop();
 
   // The other side, from any thread.
-  void count(const std::string& topic);
+  void count(const std::string& topic, std::uint32_t depth);
   void add(const std::string& topic, std::optional<TickExchange::Command> command);
   void take(const Tick& answer);
 

@@ -22,13 +22,15 @@ std::vector<std::byte> encode(const Tick& tick) {
   out.put(tick.branch);
   out.put(tick.last);
   out.put(std::string_view(tick.node));
-  std::vector<std::uint32_t> counts;
+  std::vector<std::uint32_t> counts, kept;
   out.put_count(tick.counts.size());
   for (const auto& [topic, count] : tick.counts) {
     out.put(std::string_view(topic));
     counts.push_back(count);
+    if (const auto of_topic = tick.kept.find(topic); of_topic != tick.kept.end()) kept.push_back(of_topic->second);
   }
   out.put_sequence(std::span<const std::uint32_t>(counts));
+  out.put_sequence(std::span<const std::uint32_t>(kept));
   return cdr;
 }
 
@@ -47,11 +49,24 @@ Tick decode_tick(std::span<const std::byte> cdr) {
   if (in.count(sizeof(std::uint32_t)) != topics.size())
     throw shoal::MessageError("counts must have one value for each of topics");
   for (const std::string& topic : topics) tick.counts[topic] += in.get<std::uint32_t>();
+  // A node may answer with the tick that it got, where only the topics are its own.
+  const std::size_t kept = in.count(sizeof(std::uint32_t));
+  for (std::size_t i = 0; i < kept; ++i) {
+    const auto count = in.get<std::uint32_t>();
+    if (kept == topics.size()) tick.kept[topics[i]] = count;
+  }
   return tick;
 }
 
+void TickExchange::count(const std::string& topic, std::uint32_t depth) {
+  ++counts_[topic];
+  std::uint32_t& kept = kept_[topic];
+  kept = std::min(kept + 1, depth);
+}
+
 const Tick& TickExchange::begin(std::int64_t utime, std::int64_t step, std::int32_t branch, bool last) {
-  tick_ = {utime, step, branch, last, "", std::exchange(counts_, {})};
+  tick_ = {utime, step, branch, last, "", counts_, kept_};
+  for (auto& [topic, count] : counts_) count = 0;
   answers_.clear();
   contested_.clear();
   return tick_;

@@ -21,9 +21,11 @@ int64 step                     # of the simulation
 int32 branch                   # increases with each rewind of the world
 bool last                      # the run ends with this step, and waits for no answer
 string node                    # of an answer: its sender
-# Topics with messages since the previous tick, or answer, and how many there were on each.
+# Topics, and how many messages there were on each since the previous tick, or answer.
 string[] topics
 uint32[] counts
+# Of a tick: how many messages of each topic, of this tick and earlier ones, a node receives that subscribes now.
+uint32[] kept
 )";
   /// As `ros2msg` text, with the type of the stamp.
   static std::string schema();
@@ -34,6 +36,7 @@ uint32[] counts
   bool last = false;
   std::string node;
   std::map<std::string, std::uint32_t> counts;  ///< messages by topic
+  std::map<std::string, std::uint32_t> kept;    ///< of a tick, by topic
 };
 
 std::vector<std::byte> encode(const Tick& tick);
@@ -56,8 +59,8 @@ class TickExchange {
   /// `nodes`: those whose answers a tick needs.
   explicit TickExchange(std::vector<std::string> nodes) : nodes_(std::move(nodes)) {}
 
-  /// Counts a message that was published on a topic, for the next tick.
-  void count(const std::string& topic) { ++counts_[topic]; }
+  /// Counts a message that was published on a topic, for the next tick.  `depth`: of the history of the topic.
+  void count(const std::string& topic, std::uint32_t depth);
   /// Begins a tick, and returns it with the messages since the previous one.
   const Tick& begin(std::int64_t utime, std::int64_t step, std::int32_t branch, bool last);
   /// Takes a command; none: it was refused, and is only counted.  Returns false if there is no room for it.
@@ -73,7 +76,7 @@ class TickExchange {
 
  private:
   std::vector<std::string> nodes_;
-  std::map<std::string, std::uint32_t> counts_;
+  std::map<std::string, std::uint32_t> counts_, kept_;
   Tick tick_;
   std::map<std::string, Tick> answers_;                                  // by node
   std::map<std::string, std::vector<std::optional<Command>>> commands_;  // by topic

@@ -34,7 +34,7 @@ std::vector<std::string> channels_of(const std::vector<TickExchange::Command>& c
 }
 
 TEST(TickTest, IsReadAsItWasWritten) {
-  const Tick tick{1'767'225'600'250'000, 25, 3, true, "pilot", {{"/a", 2}, {"/b", 7}}};
+  const Tick tick{1'767'225'600'250'000, 25, 3, true, "pilot", {{"/a", 2}, {"/b", 7}}, {{"/a", 9}, {"/b", 8}}};
   const Tick read = decode_tick(encode(tick));
   EXPECT_EQ(read.utime, tick.utime);
   EXPECT_EQ(read.step, 25);
@@ -42,6 +42,7 @@ TEST(TickTest, IsReadAsItWasWritten) {
   EXPECT_TRUE(read.last);
   EXPECT_EQ(read.node, "pilot");
   EXPECT_THAT(read.counts, ElementsAre(Pair("/a", 2), Pair("/b", 7)));
+  EXPECT_THAT(read.kept, ElementsAre(Pair("/a", 9), Pair("/b", 8)));
 }
 
 TEST(TickTest, BytesThatAreNotOfTheTypeAreRefused) {
@@ -56,10 +57,19 @@ TEST(TickTest, HasTheTypeHashOfItsDefinition) {
 
 TEST(TickExchangeTest, ATickCountsTheMessagesSinceTheLastOne) {
   TickExchange exchange({"pilot"});
-  exchange.count("/imu");
-  exchange.count("/imu");
+  exchange.count("/imu", 10);
+  exchange.count("/imu", 10);
   EXPECT_THAT(exchange.begin(0, 1, 0, false).counts, ElementsAre(Pair("/imu", 2)));
-  EXPECT_THAT(exchange.begin(0, 2, 0, false).counts, testing::IsEmpty());
+  EXPECT_THAT(exchange.begin(0, 2, 0, false).counts, ElementsAre(Pair("/imu", 0)));
+}
+
+TEST(TickExchangeTest, ATickTellsHowManyMessagesANodeReceivesThatStartsNow) {
+  TickExchange exchange({"pilot"});
+  for (int i = 0; i < 2; ++i) exchange.count("/imu", 3);
+  EXPECT_THAT(exchange.begin(0, 1, 0, false).kept, ElementsAre(Pair("/imu", 2)));
+  for (int i = 0; i < 2; ++i) exchange.count("/imu", 3);
+  exchange.count("/gps", 3);
+  EXPECT_THAT(exchange.begin(0, 2, 0, false).kept, ElementsAre(Pair("/gps", 1), Pair("/imu", 3)));
 }
 
 TEST(TickExchangeTest, WaitsForAllNodesAndForTheCommandsThatTheyName) {
