@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,6 +20,12 @@
 #include "shoal/message_codec.hpp"
 
 namespace bridges::ros2 {
+
+/// Point of the surface of a body.
+struct SurfacePoint {
+  std::array<float, 3> position_m{};
+  std::uint32_t rgb = 0;  ///< 0xrrggbb
+};
 
 /// Context that earlier messages of a record give a converter.
 struct ConverterContext {
@@ -58,6 +65,22 @@ struct ConverterContext {
   /// Parts of the last `sim.scene`, and the contents of `sim.asset` by hash.
   std::vector<AssetPart> asset_parts;
   std::map<std::string, std::vector<std::uint8_t>, std::less<>> assets;
+
+  /// Points of the surfaces of the last `sim.scene`.
+  struct Surfaces {
+    std::map<std::int32_t, std::vector<SurfacePoint>> moving;  ///< by the number of the body, in its frame
+    std::vector<SurfacePoint> fixed;                           ///< in the world
+  };
+  /// Returns them, from the scene and the assets so far.
+  const Surfaces& surfaces();
+  /// Forgets them; `scene`: JSON of the next ones, none: as before.
+  void renew_surfaces(const std::optional<std::string>& scene = {});
+  std::int64_t moving_surfaces_utime = std::numeric_limits<std::int64_t>::min() / 2;  ///< when they were sent
+  bool fixed_surfaces_are_sent = false;
+
+ private:
+  std::string scene_;
+  std::optional<Surfaces> surfaces_;
 };
 
 /// Conversion of the messages of an LCM type into a standard type of ROS 2.

@@ -77,7 +77,7 @@ std::size_t TopicTable::standard_topic(const Converter& converter, std::string_v
   topic.schema = standard_schema_text(converter.ros_type);
   if (!common) topic.lcm_channel = channel;
   // What is published once must reach those who subscribe later.
-  topic.latched = proposed == "/tf_static" || proposed == "/scene";
+  topic.latched = proposed == "/tf_static" || proposed == "/scene" || proposed == "/surfaces_fixed";
   const std::size_t number = add(std::move(topic));
   if (common) common_topics_.emplace(proposed, number);
   return number;

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <charconv>
 #include <cmath>
+#include <numeric>
 #include <optional>
+#include <utility>
 
 #include "bridges/ros2/converter.hpp"
 #include "bridges/ros2/converters/common_parts.hpp"
 #include "bridges/ros2/converters/markers.hpp"
 #include "bridges/ros2/converters/scene_values.hpp"
+#include "bridges/ros2/converters/surfaces.hpp"
 #include "shoal/sim_asset_t.hpp"
 #include "shoal/sim_scene_t.hpp"
 
@@ -226,6 +229,23 @@ bool write_asset(const shoal::sim_asset_t& message, ConverterContext& context, C
   return true;
 }
 
+/// Numbers of points of the surfaces: of a body that can move, of all of these, and of all that are fixed.
+constexpr std::size_t max_body_points = 150, max_moving_points = 1500, max_fixed_points = 20'000;
+
+/// Spreads points over markers, more on the larger ones.
+std::vector<SurfacePoint> points_on(const std::vector<Marker>& markers, std::size_t count) {
+  std::vector<double> extents_m;
+  for (const Marker& marker : markers) extents_m.push_back(std::sqrt(surface_area_m2(marker)));
+  const double sum_m = std::accumulate(extents_m.begin(), extents_m.end(), 0.0);
+  std::vector<SurfacePoint> points;
+  for (std::size_t i = 0; i < markers.size() && sum_m > 0; ++i) {
+    const double share = extents_m[i] / sum_m;
+    if (std::isfinite(share))
+      add_surface_points(markers[i], static_cast<std::size_t>(std::lround(share * static_cast<double>(count))), points);
+  }
+  return points;
+}
+
 /// Remembers the frames of the bodies of a scene, its parts and its devices; it gives no message itself.
 bool read_scene(const shoal::sim_scene_t& message, ConverterContext& context, CdrWriter&) {
   context.body_frames.clear();
@@ -237,6 +257,7 @@ bool read_scene(const shoal::sim_scene_t& message, ConverterContext& context, Cd
     context.body_frames.insert_or_assign(body["id"].get<std::int32_t>(), frame_of_body(body));
   }
   context.asset_parts = asset_parts_of(scene);
+  context.renew_surfaces(message.scene);
   read_devices(scene, context);
   return false;
 }
@@ -245,7 +266,7 @@ bool read_scene(const shoal::sim_scene_t& message, ConverterContext& context, Cd
 bool read_asset(const shoal::sim_asset_t& message, ConverterContext& context, CdrWriter&) {
   std::size_t kept = message.data.size();
   for (const auto& [hash, data] : context.assets) kept += data.size();
-  if (kept <= max_asset_bytes) context.assets.emplace(message.hash, message.data);
+  if (kept <= max_asset_bytes && context.assets.emplace(message.hash, message.data).second) context.renew_surfaces();
   return false;
 }
 
@@ -256,4 +277,38 @@ SHOAL_ROS2_CONVERTER(read_scene, "tf2_msgs/msg/TFMessage", "/tf");
 SHOAL_ROS2_CONVERTER(read_asset, "tf2_msgs/msg/TFMessage", "/tf");
 
 }  // namespace
+
+void ConverterContext::renew_surfaces(const std::optional<std::string>& scene) {
+  if (scene && *scene == std::exchange(scene_, *scene)) return;  // it is repeated for those who come late
+  surfaces_.reset();
+  fixed_surfaces_are_sent = false;
+}
+
+const ConverterContext::Surfaces& ConverterContext::surfaces() {
+  if (surfaces_) return *surfaces_;
+  surfaces_.emplace();
+  const Json scene = Json::parse(scene_, nullptr, false);
+  std::map<std::int32_t, std::vector<Marker>> moving;
+  std::vector<Marker> fixed;
+  for (const Json& body : list_at(scene, "bodies")) {
+    std::vector<Marker>& markers = is_fixed(body) ? fixed : moving[integer_at(body, "id")];
+    const Json& parts = list_at(body, "parts");
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      Marker marker = marker_of(scene, body, parts[i], i);
+      const auto asset = assets.find(text_at(parts[i], "asset"));
+      if (asset == assets.end()) {
+        add_part(std::move(marker), parts[i], markers);
+        continue;
+      }
+      marker.type = MarkerType::triangle_list;
+      marker.points_m = triangles_of_asset(asset->second);
+      markers.push_back(std::move(marker));
+    }
+  }
+  for (const auto& [body, markers] : moving)
+    surfaces_->moving[body] = points_on(markers, std::min(max_body_points, max_moving_points / moving.size()));
+  surfaces_->fixed = points_on(fixed, max_fixed_points);
+  return *surfaces_;
+}
+
 }  // namespace bridges::ros2

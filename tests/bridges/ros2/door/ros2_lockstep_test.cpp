@@ -23,7 +23,7 @@ class Member {
   Member()
       : lockstep_(lcm_test::own_url(1), {{"pilot"}, "shoal-ros2", 0.1},
                   {[this](const std::string& channel, std::span<const std::byte>) {
-                     lockstep_.count("/" + channel);
+                     lockstep_.count("/" + channel, 10);
                      add("pass " + channel);
                    },
                    [] { return std::optional(std::set<std::string>{"auv1.depth"}); },
