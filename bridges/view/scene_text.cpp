@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bridges/view/scene_text.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,6 +11,7 @@
 
 #include "bridges/base/json_text.hpp"
 #include "bridges/view/scene_assets.hpp"
+#include "sim/base/vehicle_colors.hpp"
 #include "sim/device/device.hpp"
 #include "sim/world/part_collisions.hpp"
 #include "sim/world/world.hpp"
@@ -180,6 +183,7 @@ Json SceneWriter::vehicles() const {
       devices.push_back(std::move(json));
     }
     all.push_back({{"name", vehicle->name()},
+                   {"color", fmt::format("#{:06x}", sim::vehicle_color(vehicle->number()))},
                    {"body", vehicle->base().number()},
                    // The page places the name and the track of a vehicle at its frame V, but only poses of bodies are
                    // published.

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "experiment/files/gnuplot.hpp"
+#include "sim/base/vehicle_colors.hpp"
 
 namespace experiment {
 
@@ -72,7 +73,6 @@ constexpr const char* canvas_for_tracks =
     "up = larger(250, 900 * (width > height ? height / width : 1))\n"
     "set terminal pngcairo size across + 100, up + 220 font ',13'\n";
 
-constexpr std::array pale_colors{"#9ecae1", "#fdbe85", "#a1d99b", "#d4b9da", "#e0c9a6", "#fcc5c0"};
 constexpr std::array strong_colors{"#000000", "#cb181d", "#54278f", "#006d2c",
                                    "#b15900", "#08519c", "#ae017e", "#636363"};
 
@@ -96,9 +96,10 @@ std::string title_of(const sim::World& world, const std::string& what) {
   return "set title " + gnuplot_text(world.config().name + ": " + what) + " noenhanced\n";
 }
 
-/// Tracks are drawn pale and wide, estimates dark and thin on top of them, so that both are visible.
+/// Tracks are drawn wide, in the colors of the vehicles and half transparent, estimates dark and thin on top of them,
+/// so that both are visible.
 std::string tracks_script(const sim::World& world, const Tracks& tracks) {
-  std::size_t vehicles = 0, estimates = 0;
+  std::size_t estimates = 0;
   std::vector<std::string> curves{
       "'outlines.dat' using (real(word(strcol(1),1))):(real(word(strcol(1),2))) with lines lc 'gray40' notitle"};
   // True tracks.
@@ -106,10 +107,10 @@ std::string tracks_script(const sim::World& world, const Tracks& tracks) {
     curves.emplace_back("'tracks.csv' every ::1 using 3:4 with dots lc 'blue' title 'vehicles'");
   } else {
     for (const auto& vehicle : world.vehicles())
-      curves.push_back(
-          fmt::format("'tracks.csv' every ::1 using (strcol(2) eq {0} ? $3 : NaN):4 with lines lw 5 lc '{1}' title {0} "
-                      "noenhanced",
-                      gnuplot_text(vehicle->name()), cycled(pale_colors, vehicles++)));
+      curves.push_back(fmt::format(
+          "'tracks.csv' every ::1 using (strcol(2) eq {0} ? $3 : NaN):4 with lines lw 5 lc '#80{1:06x}' title {0} "
+          "noenhanced",
+          gnuplot_text(vehicle->name()), sim::vehicle_color(vehicle->number())));
   }
   // Estimates.
   std::set<std::string> drawn;

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
     from .results import Folder
 
+# Colors of vehicles by their place in the results, as on the live page: the table of sim/base/vehicle_colors.hpp.
+VEHICLE_COLORS = ('#56b4e9', '#e69f00', '#009e73', '#d55e00', '#cc79a7', '#0072b2', '#a6761d', '#8c6bb1')
+
 
 def _axes(axes):
     if axes is not None:
@@ -40,10 +43,11 @@ def tracks(folder: Folder, axes: Axes | None = None) -> Axes:
     """Draws the true track of every vehicle, seen from above, in m; returns the axes."""
     axes = _axes(axes)
     columns = _columns(_file_of(folder, 'tracks.csv'))
-    for vehicle in dict.fromkeys(columns['vehicle']):
+    for number, vehicle in enumerate(dict.fromkeys(columns['vehicle'])):
         own = columns['vehicle'] == vehicle
-        line, = axes.plot(columns['x_m'][own], columns['y_m'][own], label=vehicle)
-        axes.plot(columns['x_m'][own][:1], columns['y_m'][own][:1], 'o', color=line.get_color())
+        color = VEHICLE_COLORS[number % len(VEHICLE_COLORS)]
+        axes.plot(columns['x_m'][own], columns['y_m'][own], label=vehicle, color=color)
+        axes.plot(columns['x_m'][own][:1], columns['y_m'][own][:1], 'o', color=color)
     axes.set_aspect('equal', adjustable='datalim')
     axes.set_xlabel('x east in m')
     axes.set_ylabel('y north in m')

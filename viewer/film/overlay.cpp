@@ -6,8 +6,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <sstream>
 #include <stdexcept>
+
+#include "sim/base/vehicle_colors.hpp"
 
 namespace viewer {
 
@@ -16,16 +19,20 @@ namespace {
 constexpr double max_estimate_age_s = 30;
 constexpr std::size_t max_trail_points = 4000;
 constexpr std::size_t max_pings = 500;
-/// Colors that differ for most color-blind people, too (Okabe and Ito 2008).
-constexpr sim::Color vehicle_colors[] = {{86, 180, 233}, {230, 159, 0},   {0, 200, 140},   {240, 228, 66},
-                                         {213, 94, 0},   {204, 121, 167}, {120, 140, 255}, {230, 230, 230}};
-constexpr sim::Color estimate_color{255, 90, 160};
 constexpr double path_height_m = 0.03;  ///< above the vehicle frame, which is on the ground on land
 constexpr sim::Color ping_color{255, 255, 160};
 constexpr sim::Color ray_color{255, 157, 60};  ///< as on the live page
 
+/// Returns a color of 0xrrggbb.
+constexpr sim::Color color_from(std::uint32_t rgb) {
+  return {static_cast<std::uint8_t>(rgb >> 16), static_cast<std::uint8_t>(rgb >> 8 & 0xff),
+          static_cast<std::uint8_t>(rgb & 0xff)};
+}
+
+constexpr sim::Color estimate_color = color_from(sim::estimate_color);
+
 sim::Color color_of(int number) {
-  return vehicle_colors[static_cast<std::size_t>(number) % std::size(vehicle_colors)];
+  return color_from(sim::vehicle_color(number));
 }
 
 }  // namespace

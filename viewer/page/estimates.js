@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Estimates of vehicles beside the truth: a ghost, ellipsoids of 1, 2 and 3 standard deviations, a line of the error.
 import {ghostOf, matrixOf} from './bodies.js';
+import {ESTIMATE_COLOR} from './palette.js';
 import {
   BufferAttribute,
   BufferGeometry,
@@ -81,12 +82,13 @@ export class Estimates {
     this.assets = assets;
     this.root = new Group();
     scene.add(this.root);
-    this.ghostMaterial = glass([0.95, 0.75, 0.25], 0.75, 1.5);
+    this.ghostMaterial = glass([0.95, 0.88, 0.3], 0.75, 1.5);
     this.clouds = [[1, 0.30], [2, 0.20], [3, 0.13]].map(([sigmas, opacity]) => {
-      const mesh = new InstancedMesh(new SphereGeometry(1, 40, 24), glass([0.92, 0.62, 0.1], opacity, 2.5), 1);
+      const mesh = new InstancedMesh(new SphereGeometry(1, 40, 24), glass([0.9, 0.8, 0.12], opacity, 2.5), 1);
       return {sigmas, opacity, mesh};
     });
-    this.line = new LineSegments(new BufferGeometry(), new LineBasicMaterial({color: '#ffb000', depthTest: false}));
+    this.line =
+        new LineSegments(new BufferGeometry(), new LineBasicMaterial({color: ESTIMATE_COLOR, depthTest: false}));
     this.line.frustumCulled = false;
     this.line.renderOrder = 31;
     this.showGhosts = this.showEllipsoids = true;

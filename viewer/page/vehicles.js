@@ -1,33 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Vehicles of a scene: their colors and poses.
 import {matrixOf, radiusOf} from './bodies.js';
+import {VEHICLE_COLORS} from './palette.js';
 import {Quaternion, Vector3} from './vendor/three.js';
 
-/** Colors of vehicles that have none of their own (after Okabe and Ito 2008). */
-const PALETTE = ['#56b4e9', '#009e73', '#d55e00', '#cc79a7', '#0072b2', '#8c6bb1', '#66a61e', '#a6761d'];
-
-/** Color of a vehicle in lists and trails: that of its body, if it is bright and no other vehicle has it. */
-function pickColor(body, bodies, taken) {
-  const hsl = {};
-  const own = body.parts.map((part) => bodies.colorOf(body, part)).find((color) => {
-    color.getHSL(hsl);
-    return hsl.s > 0.4 && hsl.l > 0.12 && hsl.l < 0.8 && (hsl.h < 0.08 || hsl.h > 0.18);  // yellow: estimates
-  });
-  const name = own ? `#${own.getHexString()}` : '';
-  const color =
-      own && !taken.has(name) ? name : PALETTE.find((one) => !taken.has(one)) ?? PALETTE[taken.size % PALETTE.length];
-  taken.add(color);
-  return color;
+/** Color of a vehicle: the scene says it; in a log of before it did, by the place of the vehicle. */
+function colorOf(vehicle, place) {
+  return /^#[0-9a-f]{6}$/.test(vehicle.color) ? vehicle.color : VEHICLE_COLORS[place % VEHICLE_COLORS.length];
 }
 
 /** What the page knows of the vehicles of a scene. */
-export function describeVehicles(data, bodies) {
-  const taken = new Set();
-  return data.vehicles.map((vehicle) => {
+export function describeVehicles(data) {
+  return data.vehicles.map((vehicle, place) => {
     const own = data.bodies[vehicle.body];
     return {
       ...vehicle,
-      color: pickColor(own, bodies, taken),
+      color: colorOf(vehicle, place),
       radius_m: Math.max(0.1, radiusOf(own)),
       X_BV: matrixOf(vehicle.pose),
       X_WV: matrixOf(vehicle.pose),

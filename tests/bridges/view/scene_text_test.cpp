@@ -71,6 +71,14 @@ TEST(ViewPublisher, TheSceneSaysWhichVehiclesHaveTheirOwnClock) {
   EXPECT_EQ(vehicles[1]["own_clock"], false);
 }
 
+TEST(ViewPublisher, VehiclesHaveTheColorsOfFilmsAndPlots) {
+  ViewedWorld viewed(test::modem_sea({{"a", "[0, 0, -5]", "", ""}, {"b", "[9, 0, -5]", "", ""}}));
+  const Json vehicles = viewed.last_scene()["vehicles"];
+  ASSERT_EQ(vehicles.size(), 2u);
+  EXPECT_EQ(vehicles[0]["color"], "#56b4e9");
+  EXPECT_EQ(vehicles[1]["color"], "#e69f00");
+}
+
 using namespace viewed_world;
 
 /// A world with every kind of current, except grids.
