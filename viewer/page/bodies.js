@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The bodies of the scene: parts of the same shape and look are instances of one mesh.
 import {defaultColor, Surfaces} from './materials.js';
-import {radialGrid, simpleShape} from './shapes.js';
+import {radialGrid, roundUp, simpleShape} from './shapes.js';
 import {
   Box3,
   Color,
@@ -25,13 +25,6 @@ const COLLISION_COLORS = {
 export function matrixOf(pose, scale = ONE) {
   return new Matrix4().compose(
       new Vector3(pose[0], pose[1], pose[2]), new Quaternion(pose[4], pose[5], pose[6], pose[3]), scale);
-}
-
-/** Distance between contour lines for a view: 1, 2 or 5 times a power of ten. */
-function contourDistance(view_m) {
-  const desired = Math.max(0.05, 0.03 * view_m);
-  const ten = Math.pow(10, Math.floor(Math.log10(desired)));
-  return ten * [1, 2, 5, 10].find((step) => step * ten >= desired);
 }
 
 /** All bodies of a scene, drawn; X_WB has the matrix of each body by its number. */
@@ -113,7 +106,7 @@ export class Bodies {
             part.shape === 'plane'                             ? null :
                                                                  simpleShape(part, this.list.length > 300);
         if (!shape) continue;
-        const key = `${shape.key} ${Surfaces.key(part, false)} ${body.fixed}`;
+        const key = `${shape.key} ${Surfaces.key(part)} ${body.fixed}`;
         if (!groups.has(key)) groups.set(key, {part, fixed: body.fixed, geometry: shape.geometry, instances: []});
         const X_BP = matrixOf(part.pose, new Vector3(...shape.scale));
         const name = `${body.name}/${part.name || number + 1}`;
@@ -222,7 +215,7 @@ export class Bodies {
 
   /** Keeps the infinite planes under the camera, and contour lines apart for a view from some distance. */
   follow(camera, distance_m) {
-    this.surfaces.contour_m.value = contourDistance(distance_m);
+    this.surfaces.contour_m.value = roundUp(Math.max(0.05, 0.03 * distance_m));
     for (const {mesh, body, X_BP} of this.planes) {
       const X_WP = this.X_WB[body].clone().multiply(X_BP);
       const at = camera.position.clone().applyMatrix4(X_WP.clone().invert());

@@ -120,9 +120,9 @@ export class Cameras {
   /**
    * Shows a box as a whole: from the least distance at which all its corners are in view, by the rule of
    * camera_pose_for() in viewer/images/overview.cpp.  `free`: shares of width and height of the view, about
-   * its middle, that no panel covers.
+   * its middle, that no panel covers; `share`: how far it goes there, 1: at once.
    */
-  fit(box, free) {
+  fit(box, free, share = 1) {
     if (!this.controls.enabled) this.setMode('orbit', null);
     const back = this.mode === 'top' ? new Vector3(0, -1e-4, 1).normalize() : FIT_BACK;
     const right = new Vector3().crossVectors(this.camera.up, back).normalize();
@@ -138,8 +138,8 @@ export class Cameras {
           const aside_m = Math.abs(corner.dot(right)), above_m = Math.abs(corner.dot(up));
           distance_m = Math.max(distance_m, aside_m / wide + nearer_m, above_m / high + nearer_m);
         }
-    this.controls.target.copy(center);
-    this.camera.position.copy(center).addScaledVector(back, distance_m);
+    this.controls.target.lerp(center, share);
+    this.camera.position.lerp(center.addScaledVector(back, distance_m), share);
     this.last = null;
   }
 
@@ -240,6 +240,7 @@ export class Cameras {
     const step = right.multiplyScalar(held('ArrowRight') - held('ArrowLeft'))
                      .addScaledVector(ahead, held('ArrowUp') - held('ArrowDown'));
     if (step.lengthSq() === 0) return;
+    this.controls.dispatchEvent({type: 'start'});  // the user moves the camera
     step.multiplyScalar(dt_s * 0.8 * this.camera.position.distanceTo(this.controls.target));
     this.camera.position.add(step);
     this.controls.target.add(step);
@@ -252,6 +253,7 @@ export class Cameras {
 
   /** Zooms by a factor, for keys. */
   zoom(factor) {
+    this.controls.dispatchEvent({type: 'start'});
     const offset = this.camera.position.clone().sub(this.controls.target).multiplyScalar(factor);
     this.camera.position.copy(this.controls.target).add(offset);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tides and currents: computed from the entries of the scene as the simulator does, and drawn as arrows at a depth or
 // at the vehicles.
+import {roundUp} from './shapes.js';
 import {
   BufferAttribute,
   BufferGeometry,
@@ -16,6 +17,8 @@ import {
 /** Arrows on each side of the focus; 2 GRID + 1 along each axis. */
 const GRID = 5;
 const ARROWS_MAX = (2 * GRID + 1) ** 2 + 400;
+/** Pale, to stay behind the vehicles. */
+const COLOR = '#d7eef2';
 /** Slower water has no arrow. */
 const STILL_MPS = 1e-4;
 /** The random part of a current is published once per second. */
@@ -186,8 +189,8 @@ export class WaterMotion {
 
 /** An arrow of length 1 along x, flat, with its tail at the origin. */
 function arrowGeometry() {
-  const flat = [[0, 0.045], [0, -0.045], [0.7, -0.045], [0, 0.045], [0.7, -0.045], [0.7, 0.045]];
-  const head = [[0.66, 0.15], [0.66, -0.15], [1, 0]];
+  const flat = [[0, 0.012], [0, -0.012], [0.84, -0.012], [0, 0.012], [0.84, -0.012], [0.84, 0.012]];
+  const head = [[0.8, 0.06], [0.8, -0.06], [1, 0]];
   // Two blades across each other: visible from everywhere.
   const level = [...flat, ...head].flatMap(([x, y]) => [x, y, 0]),
         upright = [...flat, ...head].flatMap(([x, z]) => [x, 0, z]);
@@ -196,17 +199,15 @@ function arrowGeometry() {
   return geometry;
 }
 
-/** Distance between arrows for a distance of the camera: 1, 2 or 5 times a power of ten. */
-export function spacingFor(distance_m) {
-  const raw = Math.max(0.1, distance_m / 8), ten = Math.pow(10, Math.floor(Math.log10(raw)));
-  return ten * [1, 2, 5, 10].find((one) => one * ten >= raw);
-}
+/** Distance between arrows for a distance of the camera. */
+const spacingFor = (distance_m) => roundUp(Math.max(0.1, distance_m / 8));
 
 /** Arrows of the current: on a grid around the focus at a depth, or at the vehicles. */
 export class CurrentArrows {
   constructor(scene) {
     this.mesh = new InstancedMesh(
-        arrowGeometry(), new MeshBasicMaterial({color: '#9be564', side: DoubleSide, transparent: true, opacity: 0.85}),
+        arrowGeometry(),
+        new MeshBasicMaterial({color: COLOR, side: DoubleSide, transparent: true, opacity: 0.7, depthWrite: false}),
         ARROWS_MAX);
     this.mesh.instanceMatrix.setUsage(DynamicDrawUsage);
     this.mesh.frustumCulled = false;
@@ -279,6 +280,6 @@ export class CurrentArrows {
     for (const arrow of named)
       labels.text(
           new Vector3(...arrow.position.map((x, k) => x - this.origin_m[k])),
-          `→ current ${arrow.speed_mps.toFixed(2)} m/s${mean}`, {color: '#9be564', dy: 28});
+          `→ current ${arrow.speed_mps.toFixed(2)} m/s${mean}`, {color: COLOR, dy: 28});
   }
 }

@@ -23,12 +23,14 @@ export const env = {
   water: {value: new Vector4(0, 0, 0.02, 0)},
   waterColor: {value: new Color(0.030, 0.150, 0.215)},
   haze_m: {value: 6000},
+  /** simulated time, for what moves with the waves; from 0 again every 1000 s */
+  seconds: {value: 0},
 };
 
 /** Declarations and functions of the shaders: skyColor(direction), throughWater(color, position), toneOut. */
 export const ENV_GLSL = /* glsl */ `
 uniform vec3 toSun, sunColor, zenith, horizon, waterColor;
-uniform float skyStrength, haze_m;
+uniform float skyStrength, haze_m, seconds;
 uniform vec4 water;
 float raisedTo64(float x) { x *= x; x *= x; x *= x; x *= x; x *= x; return x * x; }
 vec3 waterGlow(float z) { return waterColor * (0.35 + 0.75 * exp(min(0.0, z - water.x) / 45.0)); }
@@ -39,6 +41,11 @@ vec3 airColor(vec3 d) {
   if (toward > 0.99996) return sunColor * 1.5;
   if (toward > 0.9) color += (raisedTo64(raisedTo64(toward)) + 0.15 * raisedTo64(toward)) * sunColor;
   return color;
+}
+// Share of a footprint that lines of some width at the whole numbers cover.
+float lineShare(float x, float footprint, float width) {
+  float seen = max(footprint, 0.25 * width);
+  return clamp((0.5 * (width + seen) - abs(x - round(x))) / seen, 0.0, min(1.0, width / seen));
 }
 vec3 skyColor(vec3 d) {
   if (water.y < 0.5 || cameraPosition.z > water.x) return airColor(d);
@@ -119,12 +126,11 @@ export class Environment {
   setLevel(z_m) { env.water.value.x = z_m; }
 
   /** Sets how far one sees in the water, relative to the size of the scene; 0: perfectly clear. */
-  setClarity(clarity) {
-    env.water.value.z = clarity > 0 ? 1 / (clarity * Math.max(25, 1.5 * (this.extent_m ?? 50))) : 0;
-  }
+  setClarity(clarity) { env.water.value.z = clarity > 0 ? 1 / (clarity * Math.max(40, 3 * (this.extent_m ?? 50))) : 0; }
 
   /** Moves sky and shadows with the camera; `focus` is what it looks at. */
-  update({camera, focus, distance_m, shadows}) {
+  update({time_us, camera, focus, distance_m, shadows}) {
+    env.seconds.value = (time_us * 1e-6) % 1000;
     this.unproject.value.multiplyMatrices(camera.matrixWorld, camera.projectionMatrixInverse);
     const on = shadows && this.shadowsWanted;
     env.water.value.w = on ? 1 : 0;

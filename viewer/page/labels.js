@@ -157,20 +157,30 @@ export class Labels {
     c.globalAlpha = 1;
   }
 
-  /** Draws a line between two points. */
-  line(a, b, color) {
+  /** Draws a line between two points, without ends. */
+  stroke(a, b, {color, alpha, dashes = []}) {
     const from = this.project(a, this.camera), to = this.project(b, this.camera);
     if (!from || !to) return;
     this.inked = true;
     const c = this.context;
+    c.globalAlpha = alpha;
     c.strokeStyle = color;
     c.lineWidth = 2;
-    c.setLineDash([6, 4]);
+    c.setLineDash(dashes);
     c.beginPath();
     c.moveTo(...from);
     c.lineTo(...to);
     c.stroke();
     c.setLineDash([]);
+    c.globalAlpha = 1;
+  }
+
+  /** Draws a dashed line between two points, with dots at its ends. */
+  line(a, b, color) {
+    const from = this.project(a, this.camera), to = this.project(b, this.camera);
+    if (!from || !to) return;
+    this.stroke(a, b, {color, alpha: 1, dashes: [6, 4]});
+    const c = this.context;
     for (const [x, y] of [from, to]) {
       c.fillStyle = color;
       c.beginPath();
@@ -184,6 +194,9 @@ export class Labels {
 export function drawAnnotations(app) {
   const {labels} = app;
   labels.begin(app.camera, app.theme.colors);
+  // Solid: it was received.
+  for (const {from, to, look, left, mark} of app.sounds.lines)
+    labels.stroke(from, to, {color: look.color, alpha: 0.9 * left, dashes: mark.outcome === 'none' ? [] : [3, 5]});
   for (const ring of app.sounds.shown ? app.sounds.rings : []) drawRing(app, ring);
   // Names come first: whatever else is written finds another place.
   drawNames(app, app.vehicles, app.estimates);
@@ -193,6 +206,7 @@ export function drawAnnotations(app) {
   }
   app.instruments.annotate(labels, app.playback.time_us);
   app.currents.annotate(labels, app.playback.time_us);
+  app.depths.annotate(labels, app.selected);
   if (app.picking.points.length === 2) {
     labels.line(...app.picking.points, '#ffd166');
     const middle = app.picking.points[0].clone().add(app.picking.points[1]).multiplyScalar(0.5);
@@ -207,7 +221,7 @@ function drawRing(app, {sound, outer_m, inner_m}) {
   const middle_m = (outer_m + inner_m) / 2;
   const meter_px = app.camera.projectionMatrix.elements[5] * app.sides.regions[0].height / 2 /
       Math.max(1, app.camera.position.distanceTo(sound.at));
-  const width_px = Math.min(40, Math.max(1.5, (outer_m - inner_m) * meter_px));
+  const width_px = Math.min(12, Math.max(1.5, (outer_m - inner_m) * meter_px));
   const color = {ping: '#f0e442', answer: '#009e73', noise: '#cc79a7'}[sound.kind] ?? '#56b4e9';
   app.labels.circle(sound.at, middle_m, color, width_px, 0.38);
 }

@@ -3,11 +3,14 @@
 import {Bodies} from './bodies.js';
 import {Cameras} from './cameras.js';
 import {CurrentArrows} from './currents.js';
+import {Depths} from './depths.js';
 import {Environment} from './environment.js';
 import {Estimates} from './estimates.js';
+import {Fittings} from './fittings.js';
 import {Labels} from './labels.js';
 import {Dots, FieldsOfView, SelectionRing, Zones} from './overlays.js';
 import {OwnLayers} from './own_layers.js';
+import {ESTIMATE_COLOR} from './palette.js';
 import {isSoftware} from './resolution.js';
 import {Assets} from './shapes.js';
 import {Sounds} from './sounds.js';
@@ -46,20 +49,22 @@ export function makeLayers(canvas, problem, changed) {
     water: new Water(scene, software),
     zones: new Zones(scene),
   };
+  common.fittings = new Fittings(scene, common.bodies);
   const shared = new Set(scene.children);  // what two branches have in common
   const drawn = {
     sounds: new Sounds(scene),
     estimates: new Estimates(scene, assets),
     trails: new Trails(scene, ({color}) => trailColor(color)),
-    estimateTrails: new Trails(scene, () => trailColor('#ffb000'), 'ghosts'),
+    estimateTrails: new Trails(scene, () => trailColor(ESTIMATE_COLOR), 'ghosts'),
     views: new FieldsOfView(scene),
     currents: new CurrentArrows(scene),
+    depths: new Depths(scene),
     dots: new Dots(scene),
     ring: new SelectionRing(scene),
     ownLayers: new OwnLayers(),
   };
   const otherEstimates = new Estimates(scene, assets);
-  const {environment, water, zones} = common;
+  const {environment, water, zones, fittings} = common;
   return {
     renderer,
     software,
@@ -69,7 +74,7 @@ export function makeLayers(canvas, problem, changed) {
     shared,
     ...drawn,
     otherEstimates,
-    layers: new Layers([environment, water, zones, ...Object.values(drawn)]),
+    layers: new Layers([environment, water, zones, fittings, ...Object.values(drawn)]),
     labels: new Labels(document.getElementById('labels')),
     cameras: new Cameras(canvas, (x, y) => common.bodies.groundAt(x, y)),
   };

@@ -29,6 +29,8 @@ const sizeOf = (box) => box.getSize(new Vector3()).length();
 
 /** While time passes the panels are written this far apart: each time costs a layout. */
 const PANELS_MS = 125;
+/** The camera moves for this time after the last vehicle has come into view again. */
+const CATCH_UP_S = 1;
 
 /** The page. */
 class App {
@@ -42,6 +44,8 @@ class App {
     this.vehicles = [];
     this.selected = null;
     this.dirty = true;
+    this.keepsAll = false;  // the camera follows vehicles that leave the view
+    this.catchesUp_s = 0;
     this.frames = 0;
     this.drawn = 0;
     this.cpu_ms = [];
@@ -90,7 +94,7 @@ class App {
       this.fitDue ||= this.isFirstView;
     };
     this.cameras.controls.addEventListener('start', () => {
-      this.isFirstView = false;
+      this.isFirstView = this.keepsAll = false;
     });
   }
 
@@ -253,7 +257,7 @@ class App {
     this.ghosts.setScene(data);
     this.bodies.setScene(data);
     this.extent_m = this.cameras.extent_m = Math.max(2, 0.5 * sizeOf(this.bodies.boundingBox()));
-    this.vehicles = describeVehicles(data, this.bodies);
+    this.vehicles = describeVehicles(data);
     this.byName = new Map(this.vehicles.map((vehicle) => [vehicle.name, vehicle]));
     this.owners =
         new Map(this.vehicles.map((vehicle) => [data.bodies[vehicle.body].owner || vehicle.name, vehicle.name]));
@@ -316,7 +320,7 @@ class App {
 
   setMode(mode) {
     if (!this.cameras.setMode(mode, this.vehicle)) Events.toast('select a vehicle first');
-    this.fitDue = this.fitPending = this.isFirstView = false;  // the user has chosen where to look
+    this.fitDue = this.fitPending = this.isFirstView = this.keepsAll = false;  // the user has chosen where to look
     this.showMode();
     this.dirty = true;
   }
@@ -335,6 +339,7 @@ class App {
   }
 
   setView(text) {
+    this.keepsAll = false;
     this.cameras.setView(text, this.vehicle);
     this.cameras.update(0, this.vehicle, this.bodies.X_WB);
     this.showMode();
@@ -345,8 +350,25 @@ class App {
     this.setMode('device');
   }
 
-  /** Shows all that moves, with some of its surroundings. */
-  fit() {
+  /** Does the part of the view that no panel covers show all vehicles? */
+  showsAll() {
+    const {wide, high} = this.sides.free, at = new Vector3();
+    return this.vehicles.every((vehicle) => {
+      if (!Number.isFinite(vehicle.at.x)) return true;
+      at.copy(vehicle.at).project(this.camera);
+      return at.z < 1 && Math.abs(at.x) < wide && Math.abs(at.y) < high;
+    });
+  }
+
+  /** Brings vehicles that have left the view into it again, until the user moves the camera. */
+  followAll(dt_s) {
+    if (!this.keepsAll || this.cameras.mode !== 'orbit') return;
+    this.catchesUp_s = this.showsAll() ? this.catchesUp_s - dt_s : CATCH_UP_S;
+    if (this.catchesUp_s > 0) this.fit(1 - Math.exp(-4 * dt_s));
+  }
+
+  /** Shows all that moves, with some of its surroundings; `share`: how far the camera goes there. */
+  fit(share = 1) {
     const box = this.bodies.boundingBox(), center = box.getCenter(new Vector3());
     const around_m = Math.max(0.05, Math.min(2, ...this.vehicles.map((vehicle) => 0.5 * vehicle.radius_m)));
     box.expandByVector(new Vector3(around_m, around_m, 0));
@@ -355,7 +377,8 @@ class App {
     // One vehicle alone does not fill the page.
     const min_size_m = 2.5 * Math.max(0.05, this.vehicles[0]?.radius_m ?? 0.4);
     box.union(new Box3().setFromCenterAndSize(center, new Vector3(min_size_m, min_size_m, min_size_m)));
-    this.cameras.fit(box, this.sides.free);
+    this.cameras.fit(box, this.sides.free, share);
+    this.keepsAll = true;
     this.showMode();
     this.dirty = true;
   }
@@ -407,6 +430,7 @@ class App {
       this.fitDue = false;
       this.fit();
     }
+    if (moved) this.followAll(dt_s);
     this.cameras.update(dt_s, this.vehicle, this.bodies.X_WB);
     this.showMode();
     const key = this.viewKey();
@@ -468,6 +492,8 @@ class App {
     return {
       time_us: playback.time_us,
       speed: playback.newest?.speed ?? 1,
+      paused: playback.newest?.paused !== false,
+      now_ms: performance.now(),
       camera,
       focus: cameras.focus,
       distance_m: camera.position.distanceTo(cameras.focus),
@@ -475,6 +501,8 @@ class App {
       onBoard: ['first', 'device'].includes(cameras.mode),
       shadows: this.options.get('shadows'),
       level_m: this.level(),
+      placed: playback.version > 0,
+      groundAt: (x, y) => this.bodies.groundAt(x, y),
       vehicles,
       vehicle,
       selected,
@@ -490,6 +518,7 @@ class App {
     const {view} = this;
     this.bodies.follow(this.camera, view.distance_m);
     this.layers.tell('update', view);
+    this.legend.setSlowness(this.sounds.slowness);
     this.sides.render();
     this.instruments.recorder.frame();
     this.panelsStale = true;

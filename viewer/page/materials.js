@@ -62,11 +62,6 @@ uniform vec3 color0, color1;
 uniform float textureSize_m, gloss, opacity, contour_m;
 uniform sampler2D image;
 
-// Share of a footprint that lines of width 0.02 at the whole numbers cover.
-float lineShare(float x, float footprint) {
-  float seen = max(footprint, 0.005);
-  return clamp((0.5 * (0.02 + seen) - abs(x - round(x))) / seen, 0.0, min(1.0, 0.02 / seen));
-}
 float integral(float t) { float whole = floor(t / 2.0); return whole + max(0.0, t - 2.0 * whole - 1.0); }
 // Share of the second color in a footprint, where fields of length 1 alternate.
 float shareOfSecond(float x, float w) {
@@ -94,20 +89,46 @@ vec3 albedo() {
   #endif
   #ifdef GRID
     vec2 f = fwidth(vP.xy);
-    float fine = max(lineShare(vP.x, f.x), lineShare(vP.y, f.y));
-    float coarse = max(lineShare(vP.x / 10.0, f.x / 10.0), lineShare(vP.y / 10.0, f.y / 10.0));
+    float fine = max(lineShare(vP.x, f.x, 0.02), lineShare(vP.y, f.y, 0.02));
+    float coarse = max(lineShare(vP.x / 10.0, f.x / 10.0, 0.02), lineShare(vP.y / 10.0, f.y / 10.0, 0.02));
+    if (water.y > 0.5 && vWorld.z < water.x) {
+      // Under water the lines are as far apart as contour lines: the fine ones are lost in the distance.
+      vec2 at = vP.xy / (2.0 * contour_m), wide = fwidth(at);
+      return vColor * (1.0 - 0.4 * max(lineShare(at.x, wide.x, 0.02), lineShare(at.y, wide.y, 0.02)));
+    }
     return vColor * (1.0 - 0.35 * fine) * (1.0 - 0.25 * coarse * smoothstep(0.02, 0.08, max(f.x, f.y)));
   #endif
   #ifdef CONTOUR
     // Contour lines: one and a half pixels wide, every contour_m.
     float level = vP.z / contour_m, width = max(fwidth(level), 1e-5);
     float line = 1.0 - smoothstep(0.6, 1.5, abs(level - round(level)) / width);
-    return vColor * (1.0 - 0.22 * line * clamp(0.35 / width, 0.0, 1.0));
+    // Each fifth line is stronger.
+    float strength = mod(abs(round(level)), 5.0) < 0.5 ? 0.45 : 0.25;
+    return vColor * (1.0 - strength * line * clamp(0.35 / width, 0.0, 1.0));
   #endif
   return vColor;
 }
+#ifdef GROUND
+// The ground under water: paler where it is shallow and bluer where it is deep, as on a chart.
+vec3 tinted(vec3 own, float depth_m) {
+  float deep = 1.0 - exp(-depth_m / 30.0);
+  return own * mix(vec3(1.12, 1.06, 0.92), vec3(0.34, 0.56, 0.70), deep);
+}
+// Bright lines of the light that waves bundle on the ground, at most 1.
+float caustics(vec2 p, float t) {
+  vec2 q = p + 0.6 * vec2(sin(0.9 * p.y + 0.8 * t), sin(1.1 * p.x - 0.7 * t));
+  q += 0.35 * vec2(sin(2.3 * q.y - 1.1 * t), sin(2.1 * q.x + 0.9 * t));
+  float bright = 1.0 - min(abs(sin(1.3 * q.x)), abs(sin(1.3 * q.y + 0.6 * q.x)));
+  bright *= bright;
+  return bright * bright * bright;
+}
+#endif
 void main() {
   vec3 own = albedo();
+  #ifdef GROUND
+    float depth_m = water.y > 0.5 ? water.x - vWorld.z : 0.0;
+    if (depth_m > 0.0) own = tinted(own, depth_m);
+  #endif
   vec3 toEye = normalize(cameraPosition - vWorld);
   vec3 normal = normalize(vNormalW);
   if (dot(normal, toEye) < 0.0) normal = -normal;
@@ -118,6 +139,12 @@ void main() {
     light += lit * own * sunColor * toward;
     if (gloss > 0.0) light += lit * sunColor * gloss * raisedTo64(max(0.0, dot(normal, normalize(toSun + toEye))));
   }
+  #ifdef GROUND
+    // Only where the waves are near, and where a pixel is finer than the pattern.
+    float sharp = 1.0 - smoothstep(0.05, 0.3, max(fwidth(vWorld.x), fwidth(vWorld.y)));
+    float bundled = toward > 0.0 && depth_m > 0.0 && depth_m < 25.0 ? sharp * exp(-depth_m / 7.0) : 0.0;
+    if (bundled > 0.02) light += own * sunColor * toward * bundled * (1.1 * caustics(vWorld.xy, seconds) - 0.2);
+  #endif
   #ifdef GRID
     // The infinite plane ends in the colors of the horizon.
     float far = distance(cameraPosition, vWorld) / haze_m;
@@ -149,26 +176,27 @@ export class Surfaces {
   }
 
   /** Returns a name of the look of a part: parts with the same name share a material. */
-  static key(part, plain) {
+  static key(part) {
     const texture = part.color ? null : part.material.texture;
-    return JSON.stringify([texture ?? 0, part.material.gloss ?? 0, plain ? part.shape : 0]);
+    return JSON.stringify([texture ?? 0, part.material.gloss ?? 0]);
   }
 
   /** Returns the material of a part. */
   get(part, {contours = false} = {}) {
     const texture = part.color ? null : part.material.texture ?? null;
-    const plain = !part.color && !texture && !part.material.color;
-    const wireframe = this.wire && part.shape !== 'plane';
-    const key = Surfaces.key(part, plain) + contours + wireframe;
+    const plane = part.shape === 'plane';
+    const wireframe = this.wire && !plane;
+    const key = [Surfaces.key(part), plane, contours, wireframe].join();
     const known = this.materials.get(key);
     if (known) return known;
     // Choose the code of the shader by the pattern.
     const defines = {};
     if (texture)
       defines[texture.pattern.toUpperCase()] = 1;
-    else if (part.shape === 'plane' && plain)
+    else if (plane)
       defines.GRID = 1;
     if (contours && !texture) defines.CONTOUR = 1;
+    if (plane || contours) defines.GROUND = 1;
     const material = new ShaderMaterial({
       defines,
       lights: true,

@@ -417,10 +417,14 @@ export class Events {
 
 /** Fills the legend of sounds with the outcomes seen so far. */
 export class Legend {
-  constructor() { this.seen = new Set(); }
+  constructor() {
+    this.seen = new Set();
+    this.slowness = 1;
+  }
 
   clear() {
     this.seen.clear();
+    this.slowness = 1;
     $('legend').hidden = true;
   }
 
@@ -428,13 +432,26 @@ export class Legend {
     const before = this.seen.size;
     for (const outcome of outcomes)
       if (OUTCOMES[outcome]) this.seen.add(outcome);
-    if (this.seen.size === before) return;
+    if (this.seen.size !== before) this.write();
+  }
+
+  /** Says how many times slower than in the run sounds are drawn; 1: says nothing, and keeps what it has said. */
+  setSlowness(slowness) {
+    const rounded = Math.round(slowness);
+    if (rounded <= 1 || rounded === this.slowness) return;
+    this.slowness = rounded;
+    this.write();
+  }
+
+  write() {
     $('legend').hidden = false;
-    $('legend').replaceChildren(...Object.keys(OUTCOMES).filter((name) => this.seen.has(name)).map((name) => {
+    const lines = Object.keys(OUTCOMES).filter((name) => this.seen.has(name)).map((name) => {
       const line = document.createElement('div'), sign = element('i', OUTCOMES[name].sign);
       sign.style.background = OUTCOMES[name].color;
       line.append(sign, element('span', OUTCOMES[name].text));
       return line;
-    }));
+    });
+    if (this.slowness > 1) lines.push(element('div', `sound is drawn ${this.slowness} times slower`));
+    $('legend').replaceChildren(...lines);
   }
 }

@@ -66,11 +66,16 @@ export function probe(app) {
                                    id: ring.sound.id,
                                    outer_m: ring.outer_m,
                                    inner_m: ring.inner_m,
+                                   slowness: ring.slowness,
                                    center: world(ring.sound.at),
                                  })),
+    fittings: app.fittings.probe(world),
+    depths: app.depths.probe(world),
     currents: app.currents.arrows.slice(0, 500),
     level_m: app.data?.water?.level_m ?? null,
     ...app.instruments.probe(),
+    sound_lines: app.sounds.lines.map(
+        ({from, to, left, mark}) => ({from: world(from), to: world(to), left, outcome: mark.outcome})),
     marks: (app.sounds.visibleMarks ?? []).map((mark) => ({outcome: mark.outcome, position: world(mark.at)})),
   };
 }

@@ -158,6 +158,12 @@ export class Assets {
   }
 }
 
+/** Rounds up to 1, 2 or 5 times a power of ten. */
+export function roundUp(x) {
+  const ten = Math.pow(10, Math.floor(Math.log10(x)));
+  return ten * [1, 2, 5, 10].find((one) => one * ten >= x);
+}
+
 /** Returns a disc of triangles about the origin whose rings are close together near the center. */
 export function radialGrid(rings, sectors, first_m, last_m) {
   const points = new Float32Array(3 * (1 + rings * sectors)), corners = [];

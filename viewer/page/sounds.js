@@ -15,8 +15,12 @@ import {
 
 const SOUNDS_MAX = 256;
 const MARKS_MAX = 400;
-/** Marks stay for this wall time. */
+/** Marks, and the lines from senders to receivers, stay for this wall time. */
 const MARK_S = 2.5;
+/** A run that is faster is shown as if it had this speed. */
+const SPEED_MAX = 100;
+/** A sound that would cross the scene in less wall time is drawn slower, so that it takes this. */
+const CROSSING_S = 0.8;
 
 /** Looks of outcomes, for people who cannot tell colors too (Okabe and Ito 2008): color, sign and text. */
 export const OUTCOMES = {
@@ -93,10 +97,14 @@ export class Sounds {
 
   rewind() { this.clear(); }
 
+  /** How many times slower than in the run the sounds are drawn; 1: as in the run. */
+  get slowness() { return Math.max(1, ...this.rings.map((ring) => ring.slowness)); }
+
   /** Forgets all sounds: another scene, or the time was set. */
   clear() {
     this.sounds = [];
     this.marks = [];
+    this.lines = [];
     this.rings = [];
     this.mesh.count = 0;
   }
@@ -113,7 +121,7 @@ export class Sounds {
     for (const item of items) {
       if (!Array.isArray(item.position_m) || !(item.sound_speed_mps > 0)) continue;
       const at = new Vector3(...item.position_m.map((x, i) => x - this.origin_m[i]));
-      this.sounds.push({...item, at, reach_m: 0});
+      this.sounds.push({...item, at, reach_m: 0, since_ms: null});
     }
     while (this.sounds.length > SOUNDS_MAX) this.sounds.shift();
   }
@@ -123,10 +131,10 @@ export class Sounds {
     for (const item of items) {
       if (!Array.isArray(item.position_m)) continue;
       const at = new Vector3(...item.position_m.map((x, i) => x - this.origin_m[i]));
-      this.marks.push(
-          {...item, at, look: OUTCOMES[item.outcome] ?? { color: '#999999', sign: '?', text: item.outcome }});
-      // The sound is drawn up to the farthest receiver.
       const sound = this.sounds.findLast((one) => one.id === item.id);
+      const look = OUTCOMES[item.outcome] ?? {color: '#999999', sign: '?', text: item.outcome};
+      this.marks.push({...item, at, look, from: sound?.at ?? null});
+      // The sound is drawn up to the farthest receiver.
       if (sound) sound.reach_m = Math.max(sound.reach_m, 1.2 * sound.at.distanceTo(at));
     }
     while (this.marks.length > MARKS_MAX) this.marks.shift();
@@ -138,21 +146,40 @@ export class Sounds {
     if (age_s < 0) return null;
     const outer_m = age_s * sound.sound_speed_mps;
     const inner_m = Math.max(0, outer_m - sound.duration_us * 1e-6 * sound.sound_speed_mps);
-    return {outer_m, inner_m};
+    return {outer_m, inner_m, slowness: 1};
   }
 
-  /** Draws what is on its way at a time; `speed`: simulated seconds per second. */
-  update({time_us, speed}) {
-    const lasting_us = MARK_S * 1e6 * Math.max(1, Math.min(100, speed));
+  /** The radii as they are drawn: while the run is too fast for a sound to be seen, it expands with the wall time. */
+  drawnRadii(sound, reach_m, {time_us, speed, paused, now_ms}) {
+    const radii = this.radii(sound, time_us);
+    const crossing_s = reach_m / sound.sound_speed_mps / speed;
+    if (!radii || paused || crossing_s >= CROSSING_S) return radii;
+    sound.since_ms ??= now_ms;
+    const outer_m = reach_m * (now_ms - sound.since_ms) * 1e-3 / CROSSING_S;
+    const thick_m = Math.min(0.15 * reach_m, Math.max(0.04 * reach_m, radii.outer_m - radii.inner_m));
+    const inner_m = Math.max(0, outer_m - thick_m);
+    return {outer_m, inner_m, slowness: CROSSING_S / crossing_s};
+  }
+
+  /** Draws what is on its way at a time; `speed`: simulated seconds per second, 0 or infinite: as fast as it goes. */
+  update({time_us, speed: chosen, paused, now_ms}) {
+    const speed = chosen > 0 && chosen < SPEED_MAX ? chosen : SPEED_MAX;
+    const lasting_us = MARK_S * 1e6 * Math.max(1, speed);
     this.marks = this.marks.filter((mark) => mark.time_us > time_us - lasting_us && mark.time_us < time_us + 60e6);
     this.visibleMarks = this.shown ? this.marks.filter((mark) => mark.time_us <= time_us) : [];
+    this.lines = this.visibleMarks.filter((mark) => mark.from).map((mark) => {
+      return {from: mark.from, to: mark.at, look: mark.look, left: 1 - (time_us - mark.time_us) / lasting_us, mark};
+    });
     this.rings = [];
     let count = 0;
     const matrix = new Matrix4();
     this.sounds = this.sounds.filter((sound) => {
-      const radii = this.radii(sound, time_us);
+      // One that is drawn slower ends at its farthest receiver, if that is known.
+      const whole_m = Math.max(this.reach_m, sound.reach_m);
+      const slowed_m = sound.reach_m > 0 ? sound.reach_m : this.reach_m;
+      const radii = this.drawnRadii(sound, slowed_m, {time_us, speed, paused, now_ms});
       if (!radii) return sound.time_us < time_us + 60e6;
-      const reach_m = Math.max(this.reach_m, sound.reach_m);
+      const reach_m = radii.slowness > 1 ? slowed_m : whole_m;
       if (radii.inner_m > reach_m) return false;
       const fade = Math.max(0, 1 - radii.outer_m / (1.3 * reach_m));
       this.rings.push({sound, ...radii});
