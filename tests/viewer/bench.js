@@ -13,6 +13,10 @@ const SIZE = {
   width: 640,
   height: 480
 };
+const WIDE = {
+  width: 1280,
+  height: 720
+};
 const TICK_S = 1 / Number(execFileSync('getconf', ['CLK_TCK']));
 
 const median = (numbers) => [...numbers].sort((a, b) => a - b)[numbers.length >> 1];
@@ -70,10 +74,10 @@ async function firstFrames(script, count) {
 }
 
 /** Figures of a page that shows a scene for some seconds while it plays. */
-async function load(script, prepare) {
+async function load(script, prepare, size = SIZE) {
   const browser = await launch([]);
   const server = await new MockServer(script).listen();
-  const page = await open(browser, `${server.url}#t=secret`, SIZE);
+  const page = await open(browser, `${server.url}#t=secret`, size);
   const cdp = await page.createCDPSession();
   await cdp.send('Performance.enable', {timeDomain: 'threadTicks'});
   await until(page, (p) => p.placed && p.frames > 0, 'the first frame');
@@ -115,6 +119,7 @@ const select = () => window.shoal.select('v500');
 const rows = {
   '1000 vehicles': await load(scenes.thousand(), () => {}),
   '1000 vehicles, one selected': await load(scenes.thousand(), select),
+  [`100 vehicles and the sea, ${WIDE.width} x ${WIDE.height}`]: await load(scenes.fleet(), () => {}, WIDE),
   '1000 bodies of one vehicle': await load(scenes.thousandBodies(), () => {}),
 };
 for (const [name, script] of [['land', scenes.land()], ['1000 vehicles', scenes.thousand()]]) {

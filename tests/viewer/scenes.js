@@ -229,6 +229,19 @@ export function underwater() {
   };
 }
 
+/** A hundred AUVs with a propeller and fins each, in rows under waves and over a sea floor. */
+export function fleet() {
+  const count = 100, script = underwater(), floor = script.scene.bodies.at(-1);
+  const device = (body, name, type, x) => ({name, type, body, pose: at(x, 0, 0), channels: []});
+  const names = [...Array(count).keys()].map((i) => `auv${i}`);
+  script.scene.bodies = number([...names.map((name) => auv(name, '#f2b01e')), floor]);
+  script.scene.vehicles = names.map(
+      (name, i) => vehicle(name, i, [device(i, 'propeller', 'thruster', -0.9), device(i, 'rudder', 'fin', -0.8)]));
+  script.posesAt = (t_s) => names.map(
+      (_, i) => at(18 * (i % 10) - 90 + Math.sin(0.2 * t_s + i), 18 * Math.floor(i / 10) - 90, -6 - i % 7, 0.1 * t_s));
+  return script;
+}
+
 /** Two boats in waves. */
 export function surface() {
   const bodies = number([

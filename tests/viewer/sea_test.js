@@ -201,3 +201,24 @@ describe('vehicles', () => {
     });
   });
 });
+
+describe('the resolution', () => {
+  it('falls to a half while frames take long, and the page says so', async () => {
+    await withPage(underwater(), async (page) => {
+      const seen = await page.evaluate(async () => {
+        const {Resolution} = await import('./resolution.js');
+        const ratios = [], hidden = [];
+        const resolution = new Resolution({setPixelRatio: (ratio) => ratios.push(ratio)}, true);
+        const note = () => hidden.push(document.getElementById('coarse').hidden);
+        const start_ms = performance.now();
+        note();
+        for (let i = 1; i <= 20; ++i) resolution.adapt(true, start_ms + 300 * i);
+        note();
+        resolution.adapt(false, start_ms + 300 * 20 + 1000);  // nothing moves
+        note();
+        return {ratios, hidden};
+      });
+      assert.deepEqual(seen, {ratios: [1, 0.5, 1], hidden: [true, false, true]});
+    });
+  });
+});

@@ -4,12 +4,14 @@
 import {roundUp} from './shapes.js';
 import {trailColor} from './trails.js';
 import {
+  BackSide,
   BufferAttribute,
   BufferGeometry,
   DynamicDrawUsage,
   Group,
   LineBasicMaterial,
   LineSegments,
+  Mesh,
   ShaderMaterial,
   Vector3,
 } from './vendor/three.js';
@@ -42,6 +44,23 @@ void main() {
   // Dashes and gaps are equally long, and counted from the surface.
   if (mod(level - vUp, 2.0 * dash_m) > dash_m) discard;
   gl_FragColor = vTint;
+  #include <colorspace_fragment>
+}`;
+
+const WALL_VERTEX = /* glsl */ `
+varying float vDepth;
+uniform float level;
+void main() {
+  vDepth = level - position.z;
+  gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
+}`;
+const WALL_FRAGMENT = /* glsl */ `
+varying float vDepth;
+uniform float height_m;
+void main() {
+  // From the light at the surface to the dark of the bottom.
+  float share = clamp(vDepth / height_m, 0.0, 1.0);
+  gl_FragColor = vec4(mix(vec3(0.22, 0.58, 0.66), vec3(0.01, 0.06, 0.13), share), mix(0.30, 0.60, share));
   #include <colorspace_fragment>
 }`;
 
@@ -98,11 +117,30 @@ export class Depths {
     this.drops = new Segments(this.dashed, VEHICLES_MAX * (4 + 4 * RING_STEPS));
     const solid = new LineBasicMaterial({color: FRAME_COLOR, transparent: true, opacity: 0.75, depthWrite: false});
     this.frame = new Segments(solid, 2000);
-    this.root.add(this.drops.lines, this.frame.lines);
+    this.makeWalls();
+    this.root.add(this.walls, this.drops.lines, this.frame.lines);
     this.shown = true;
     this.items = [];
     this.scale = [];
     scene.add(this.root);
+  }
+
+  /** The sides of the frame that are behind the vehicles, as the camera sees them. */
+  makeWalls() {
+    const material = new ShaderMaterial({
+      uniforms: {level: this.dashed.uniforms.level, height_m: {value: 1}},
+      vertexShader: WALL_VERTEX,
+      fragmentShader: WALL_FRAGMENT,
+      side: BackSide,
+      transparent: true,
+      depthWrite: false,
+    });
+    const geometry = new BufferGeometry();
+    const corners = new Float32Array(3 * 6 * 4 * SIDE_STEPS);
+    geometry.setAttribute('position', new BufferAttribute(corners, 3).setUsage(DynamicDrawUsage));
+    this.walls = new Mesh(geometry, material);
+    this.walls.frustumCulled = false;
+    this.walls.renderOrder = 9;
   }
 
   choose(get) { this.shown = get('depths'); }
@@ -174,16 +212,25 @@ export class Depths {
       const z = bottomAt(x, y);
       return Number.isFinite(z) ? z + 0.001 * distance_m : floor;
     };
+    const wall = this.walls.geometry.getAttribute('position');
+    let at = 0, lowest = floor;
     corners.forEach(([ax, ay], i) => {
       const [bx, by] = corners[(i + 1) % 4];
       frame.add(ax, ay, level_m, bx, by, level_m, color);
       const place = (k) => [ax + (bx - ax) * k / SIDE_STEPS, ay + (by - ay) * k / SIDE_STEPS];
       for (let k = 0; k < SIDE_STEPS; ++k) {
         const [px, py] = place(k), [qx, qy] = place(k + 1);
-        frame.add(px, py, lowAt(px, py), qx, qy, lowAt(qx, qy), color);
+        const p = lowAt(px, py), q = lowAt(qx, qy);
+        frame.add(px, py, p, qx, qy, q, color);
+        lowest = Math.min(lowest, p);
+        for (const [x, y, z] of [
+                 [px, py, p], [qx, qy, q], [qx, qy, level_m], [px, py, p], [qx, qy, level_m], [px, py, level_m]])
+          wall.setXYZ(at++, x, y, z);
       }
       frame.add(ax, ay, level_m, ax, ay, lowAt(ax, ay), color);
     });
+    wall.needsUpdate = true;
+    this.walls.material.uniforms.height_m.value = Math.max(1e-3, level_m - lowest);
     this.addScale(corners, {level_m, lowAt, camera});
   }
 

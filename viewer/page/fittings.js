@@ -74,7 +74,7 @@ export function fittingsOf(vehicle, bodies) {
     // The end of the capsule that is ahead.
     const ahead = new Vector3(0, 0, 1).transformDirection(X).x > 0 ? 1 : -1;
     add(vehicle.body, [
-      {part: {shape: 'sphere', radius_m: 1.01 * r, color: DARK}, X_BP: placed(X, 0, 0, ahead * half_m)},
+      {part: {shape: 'sphere', radius_m: 1.05 * r, color: DARK}, X_BP: placed(X, 0, 0, ahead * half_m)},
       {
         part: {shape: 'cylinder', radius_m: 1.02 * r, length_m: 1.2 * r, color: vehicle.color},
         X_BP: placed(X, 0, 0, ahead * (half_m - 1.6 * r))
@@ -103,7 +103,7 @@ export class Fittings {
     // One mesh for each shape.
     const groups = new Map();
     for (const item of items.slice(0, FITTINGS_MAX)) {
-      const {key, geometry, scale} = simpleShape(item.part, true);
+      const {key, geometry, scale} = simpleShape(item.part, vehicles.length > 50);
       if (!groups.has(key)) groups.set(key, {geometry, items: []});
       groups.get(key).items.push({...item, scale: new Matrix4().makeScale(...scale)});
     }

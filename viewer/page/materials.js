@@ -92,8 +92,8 @@ vec3 albedo() {
     float fine = max(lineShare(vP.x, f.x, 0.02), lineShare(vP.y, f.y, 0.02));
     float coarse = max(lineShare(vP.x / 10.0, f.x / 10.0, 0.02), lineShare(vP.y / 10.0, f.y / 10.0, 0.02));
     if (water.y > 0.5 && vWorld.z < water.x) {
-      // Under water the lines are as far apart as contour lines: the fine ones are lost in the distance.
-      vec2 at = vP.xy / (2.0 * contour_m), wide = fwidth(at);
+      // Under water the lines are farther apart: fine ones are lost in the distance.
+      vec2 at = vP.xy / (4.0 * contour_m), wide = fwidth(at);
       return vColor * (1.0 - 0.4 * max(lineShare(at.x, wide.x, 0.02), lineShare(at.y, wide.y, 0.02)));
     }
     return vColor * (1.0 - 0.35 * fine) * (1.0 - 0.25 * coarse * smoothstep(0.02, 0.08, max(f.x, f.y)));

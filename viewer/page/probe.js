@@ -17,7 +17,7 @@ export function probe(app) {
     triangles: app.renderer.info.render.triangles,
     scene: app.data && {world: app.data.world, revision: app.data.revision},
     tape: app.picking.text(),
-    placed: app.playback.drawn !== null,
+    placed: app.playback.version > 0,
     time_us: app.playback.time_us,
     epoch_us: app.timeBar.hello.epoch_us ?? 0,
     connected: app.connection.isOpen,

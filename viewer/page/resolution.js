@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Resolution of the drawing: half of it while frames take long.
+// Resolution of the drawing: half of it while frames take long, which the page says.
 
 /** Frames that take longer are drawn with half the resolution. */
 const SLOW_MS = 160;
@@ -33,6 +33,7 @@ export class Resolution {
   apply() {
     const full = Math.min(devicePixelRatio, this.software ? 1 : 2);
     this.renderer.setPixelRatio(this.sharp ? full : 0.5 * full);
+    document.getElementById('coarse').hidden = this.sharp;
   }
 
   /** Takes whether this frame differs from the one before; returns whether it must be drawn for another resolution. */
