@@ -25,11 +25,21 @@ struct SharedByCameras {
   std::shared_ptr<sim::TextureLibrary> textures = std::make_shared<sim::TextureLibrary>();
   std::map<std::string, std::weak_ptr<const sim::PixelRays>> rays;
 
-  std::shared_ptr<const sim::PixelRays> rays_of(const sim::OpticsConfig& config, int per_side) {
-    auto& known = rays[config.text() + " " + std::to_string(per_side)];
+  /// `port`: null: without one.
+  std::shared_ptr<const sim::PixelRays> rays_of(const sim::OpticsConfig& config, int per_side,
+                                                const sim::FlatPortConfig* port = nullptr) {
+    std::string key = config.text() + " " + std::to_string(per_side);
+    if (port != nullptr) key += fmt::format(" {} {} {}", port->distance_m, port->glass_m, port->glass_index);
+    auto& known = rays[key];
     auto found = known.lock();
-    if (!found) known = found = sim::make_pixel_rays(sim::Optics(config), per_side);
+    if (!found) known = found = make_rays(config, per_side, port);
     return found;
+  }
+
+  static std::shared_ptr<const sim::PixelRays> make_rays(const sim::OpticsConfig& config, int per_side,
+                                                         const sim::FlatPortConfig* port) {
+    const sim::Optics optics(config);
+    return port == nullptr ? sim::make_pixel_rays(optics, per_side) : sim::make_pixel_rays(optics, per_side, *port);
   }
 };
 
@@ -47,6 +57,10 @@ sim::ImageKind render_kind(Camera::Kind kind) {
       return sim::ImageKind::parts;
     case Camera::Kind::vehicles:
       return sim::ImageKind::groups;
+    case Camera::Kind::normals:
+      return sim::ImageKind::normals;
+    case Camera::Kind::flow:
+      return sim::ImageKind::flow;
     default:
       return sim::ImageKind::color;
   }
@@ -96,6 +110,13 @@ double baseline_of(const Camera::Params& params, const sim::DeviceContext& conte
 void ExposureParams::read(sim::ParamReader& in) {
   in.read("auto", automatic, "automatic exposure: the mean of each image becomes middle grey");
   in.read("gain", gain, sim::above_to(0, 1000), "factor of the brightness, in addition to auto");
+  in.read_choice("white_balance", white_balance,
+                 {{"none", WhiteBalance::none}, {"gray_world", WhiteBalance::gray_world}},
+                 "rgb: gray_world: all colors of each image get the same mean");
+  in.read("color_gains", color_gains, sim::above_to(0, 1000), "rgb: gains of red, green and blue: a fixed balance");
+  if (in.describing()) return;
+  if (white_balance != WhiteBalance::none && in.has("color_gains"))
+    in.error("color_gains", "needs either 'white_balance' or 'color_gains', not both");
 }
 
 void Camera::Params::read(sim::ParamReader& in) {
@@ -104,7 +125,9 @@ void Camera::Params::read(sim::ParamReader& in) {
                   {"grey", Kind::grey},
                   {"depth", Kind::depth},
                   {"segmentation_parts", Kind::parts},
-                  {"segmentation_vehicles", Kind::vehicles}},
+                  {"segmentation_vehicles", Kind::vehicles},
+                  {"normals", Kind::normals},
+                  {"flow", Kind::flow}},
                  "kind of image");
   optics.read(in);
   // Encoding.
@@ -133,12 +156,17 @@ void Camera::Params::read(sim::ParamReader& in) {
   in.read("blur_samples", blur_samples, sim::between(2, 64), "images that are averaged for a blurred one");
   in.read("sees_own_vehicle", sees_own_vehicle, "its own vehicle is visible in the image");
   in.read_references("see_through", see_through, "category", "categories of parts that are not visible in the image");
+  // Water.
+  in.read("water", water, "the water as the camera sees it; unset: it is invisible");
+  in.read_list("lamps", lamps, "lamp", "rgb, grey: lamps that the camera carries, whose light only it sees");
+  in.read("flat_port", flat_port, "plane window before the lens, which refracts under water; unset: a dome");
   in.read(
       "right_of", right_of,
       "the left camera of the stereo pair in which this is the right one: with its lens, rate and phase, and to the "
       "right of it; unset: no pair");
   if (in.describing()) return;
   // Check combinations of keys and the size of messages.
+  check_kind(in);
   if (encoding == Encoding::raw16 && image != Kind::depth) in.error("encoding", "'raw16' is for images of depth");
   if (encoding == Encoding::jpeg && !takes_light(image)) in.error("encoding", "'jpeg' is for images rgb and grey");
   if (static_cast<double>(optics.width) * optics.height * antialias * antialias > sim::max_image_pixels)
@@ -156,6 +184,17 @@ void Camera::Params::read(sim::ParamReader& in) {
                          max_message_bytes, message_bytes()));
 }
 
+void Camera::Params::check_kind(sim::ParamReader& in) const {
+  const bool color_balance =
+      exposure.white_balance != ExposureParams::WhiteBalance::none || exposure.color_gains != sim::Vector3d::Ones();
+  if (color_balance && image != Kind::rgb) in.error("exposure", "white_balance and color_gains are for images rgb");
+  if (water && !takes_light(image)) in.error("water", "'water' is for images rgb and grey");
+  if (!lamps.empty() && !takes_light(image)) in.error("lamps", "'lamps' is for images rgb and grey");
+  if (image == Kind::flow && encoding != Encoding::raw) in.error("encoding", "'encoding' must be raw for images flow");
+  if (image == Kind::flow && readout_s > 0) in.error("readout_s", "'readout_s' is not for images flow");
+  if (image == Kind::flow && flat_port) in.error("flat_port", "'flat_port' is not for images flow");
+}
+
 void Camera::Params::check_time(sim::ParamReader& in) const {
   const char* key = readout_s > 0 ? "readout_s" : "exposure_time_s";
   const double span_s = std::max(readout_s, exposure_time_s);
@@ -167,10 +206,12 @@ void Camera::Params::check_time(sim::ParamReader& in) const {
 
 double Camera::Params::message_bytes() const {
   if (encoding == Encoding::png || encoding == Encoding::jpeg) return 0;
-  const double bytes = image == Kind::rgb     ? 3
-                       : image == Kind::grey  ? 1
-                       : image == Kind::depth ? (encoding == Encoding::raw ? 4 : 2)
-                                              : 2;
+  const double bytes = image == Kind::rgb       ? 3
+                       : image == Kind::grey    ? 1
+                       : image == Kind::depth   ? (encoding == Encoding::raw ? 4 : 2)
+                       : image == Kind::normals ? 12
+                       : image == Kind::flow    ? 8
+                                                : 2;
   return bytes * optics.width * optics.height;
 }
 
@@ -183,6 +224,8 @@ Camera::Camera(const Params& params, const sim::DeviceContext& context)
       step_(sim::from_seconds(context.world.config().physics.step_s)),
       own_group_(context.vehicle.group()),
       baseline_m_(baseline_of(params, context)),
+      X_BS_(context.config.X_BS()),
+      body_(context.body),
       noise_(context, params, params.image == Kind::rgb ? 3 : 1) {
   change(params);
   // Before its first image the camera has a black one of the right size.
@@ -219,6 +262,13 @@ void Camera::change(const Params& params) {
   }
   given_fov_rad_ = params.optics.fov_rad;
   params_ = std::move(next);
+  water_.reset();
+  if (params_.water) {
+    if (!world_.medium().has_water())
+      sim::throw_config_error(config_.place, "vehicle '" + vehicle_.name() + "': device '" + config_.name + "'",
+                              "'water': the world has no water");
+    water_ = std::make_unique<sim::WaterView>(world_.medium(), world_.config().light, *water_look());
+  }
   SharedByCameras& shared = shared_.of(shared_by_cameras);
   sim::RenderOptions options;
   options.kind = render_kind(params.image);
@@ -227,8 +277,12 @@ void Camera::change(const Params& params) {
   options.range_max_m = params.range_max_m;
   options.depth_along_ray = params.depth_along == DepthAlong::ray;
   options.light = world_.config().light;
-  renderer_ = std::make_unique<sim::Renderer>(physics_, shared.rays_of(params_.optics, rays_per_side()), options,
-                                              shared.textures);
+  options.water = water_.get();
+  options.with_depth = water_ && water_->has_particles();
+  for (const sim::LampConfig& lamp : params_.lamps) options.lamps.push_back(lamp.lamp(X_BS_));
+  dry_rays_ = shared.rays_of(params_.optics, rays_per_side());
+  wet_rays_ = params_.flat_port ? shared.rays_of(params_.optics, rays_per_side(), &*params_.flat_port) : nullptr;
+  renderer_ = std::make_unique<sim::Renderer>(physics_, dry_rays_, options, shared.textures);
   lens_moved_ = false;
   renderer_->clear(in_progress_);
   next_exposure_ = 0;
@@ -242,8 +296,15 @@ int Camera::exposures() const {
 
 void Camera::expose(int exposure, const sim::Pose& X_WS) {
   // The rays of a lens that moves are its own, and are made only when they are needed.
-  if (lens_moved_) renderer_->set_rays(sim::make_pixel_rays(sim::Optics(params_.optics), rays_per_side()));
+  if (lens_moved_) {
+    dry_rays_ = SharedByCameras::make_rays(params_.optics, rays_per_side(), nullptr);
+    if (wet_rays_) wet_rays_ = SharedByCameras::make_rays(params_.optics, rays_per_side(), &*params_.flat_port);
+    renderer_->set_rays(dry_rays_);
+  }
   lens_moved_ = false;
+  if (wet_rays_) renderer_->set_rays(world_.medium().in_water(X_WS.translation()) ? wet_rays_ : dry_rays_);
+  if (water_) water_->update(X_WS.translation());
+  if (params_.image == Kind::flow) renderer_->set_motion({body_.velocity_at_W(X_BS_.translation()), body_.w_WB_W()});
   if (params_.readout_s > 0)
     renderer_->render_rows(X_WS, exposure, exposure + 1, 1, in_progress_);
   else
@@ -307,13 +368,38 @@ void Camera::measure(const sim::SenseContext& context) {
   renderer_->clear(in_progress_);
   if (params_.image == Kind::depth) depth_m_ = frame_.depth_m;
   if (!takes_light(params_.image)) return;
+  develop();
+}
+
+std::optional<sim::WaterLook> Camera::water_look() const {
+  if (!params_.water) return std::nullopt;
+  sim::WaterLook look;
+  look.optics = params_.water->optics();
+  look.waves_range_m = std::min(look.waves_range_m, params_.range_max_m);
+  look.caustics = params_.water->has_caustics();
+  look.particles_per_m3 = params_.water->particles();
+  look.seed = static_cast<std::uint64_t>(world_.config().run.seed);
+  return look;
+}
+
+void Camera::develop() {
   gain_ = static_cast<float>(params_.exposure.gain);
-  if (params_.exposure.automatic) gain_ *= sim::auto_gain(frame_.light);
+  balance_ = params_.exposure.white_balance == ExposureParams::WhiteBalance::gray_world
+                 ? sim::gray_world_gains(frame_.light)
+                 : sim::LinearColor(params_.exposure.color_gains.cast<float>());
+  const bool balanced = balance_ != sim::LinearColor::Ones();
+  if (params_.exposure.automatic) {
+    sim::FloatImage seen = frame_.light;
+    for (std::size_t i = 0; balanced && i < seen.data.size(); ++i)
+      seen.data[i] *= balance_[static_cast<Eigen::Index>(i % 3)];
+    constexpr float max_gain = 64, max_gain_in_water = 1e4F;
+    gain_ *= sim::auto_gain(seen, water_ ? max_gain_in_water : max_gain);
+  }
   if (params_.image == Kind::grey)
     light_ = sim::grey_of(frame_.light);
   else
     std::swap(light_, frame_.light);
-  levels_ = sim::develop(light_, gain_);
+  levels_ = balanced ? sim::develop(light_, gain_ * balance_) : sim::develop(light_, gain_);
 }
 
 void Camera::add_sensor_noise(sim::Random& random) {
@@ -322,7 +408,8 @@ void Camera::add_sensor_noise(sim::Random& random) {
   for (std::size_t i = 0; i < light_.data.size(); ++i) {
     const double electrons = full * std::clamp(static_cast<double>(gain_ * light_.data[i]), 0.0, 1.0);
     const double counted = electrons + std::sqrt(electrons + read_variance) * random.gaussian();
-    levels_.data[i] = sim::srgb_from_linear(static_cast<float>(counted / full));
+    const float balance = light_.channels == 3 ? balance_[static_cast<Eigen::Index>(i % 3)] : 1;
+    levels_.data[i] = sim::srgb_from_linear(balance * static_cast<float>(counted / full));
   }
 }
 
@@ -361,8 +448,9 @@ void Camera::visit_state(sim::StateArchive& archive) {
     visit(in_progress_.light);
     visit(in_progress_.depth_m);
     visit(in_progress_.labels);
+    visit(in_progress_.vectors);
   }
-  image_digest_.visit(archive, levels_.data, depth_m_.data, frame_.labels.data);
+  image_digest_.visit(archive, levels_.data, depth_m_.data, frame_.labels.data, frame_.vectors.data);
 }
 
 std::string Camera::label_text() const {

@@ -76,6 +76,28 @@ void set_depth(shoal::image_t& message, const Camera& camera) {
   add_metadata(message, "depth_along", std::string(word_of(Camera::depth_along_words, camera.params().depth_along)));
 }
 
+/// Returns normals as colors: -1 to 1 of x, y, z are 0 to 255 of red, green and blue; black: no surface.
+sim::Image8 colors_of(const sim::FloatImage& normals) {
+  sim::Image8 image(normals.width, normals.height, 3);
+  for (std::size_t i = 0; i + 2 < normals.data.size(); i += 3) {
+    const float* normal = normals.data.data() + i;
+    if (normal[0] == 0 && normal[1] == 0 && normal[2] == 0) continue;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      image.data[i + axis] =
+          static_cast<std::uint8_t>(std::lround(127.5F * (1 + std::clamp(normal[axis], -1.0F, 1.0F))));
+  }
+  return image;
+}
+
+void set_normals(shoal::image_t& message, const Camera& camera) {
+  static thread_local sim::Bytes bytes;
+  add_metadata(message, "frame", "sensor");
+  if (camera.params().encoding == Camera::Encoding::raw)
+    return set_raw(message, camera.vectors(), pixel_format_float_3);
+  sim::encode_png(colors_of(camera.vectors()), bytes);
+  set_compressed(message, bytes, pixel_format_png);
+}
+
 }  // namespace
 
 // Publishes shoal.image_t, equal on the wire to bot_core's.
@@ -100,6 +122,13 @@ void fill(const Camera& camera, shoal::image_t& message) {
     case Camera::Kind::vehicles:
       set_16_bits(message, camera.labels(), params.encoding == Camera::Encoding::png);
       add_metadata(message, "labels", camera.label_text());
+      break;
+    case Camera::Kind::normals:
+      set_normals(message, camera);
+      break;
+    case Camera::Kind::flow:
+      set_raw(message, camera.vectors(), pixel_format_float_2);
+      add_metadata(message, "unit", "px/s");
       break;
   }
   message.size = static_cast<std::int32_t>(message.data.size());

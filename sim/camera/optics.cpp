@@ -236,8 +236,40 @@ std::optional<Vector2d> Optics::project(const Vector3d& p_S) const {
   return Vector2d(cx_ + fx_ * place.x(), cy_ + fy_ * place.y());
 }
 
+void FlatPortConfig::read(ParamReader& in) {
+  in.read("distance_m", distance_m, between(0, 1), "from the entrance pupil of the lens to the glass");
+  in.read("glass_m", glass_m, between(0, 0.2), "thickness of the glass");
+  in.read("glass_index", glass_index, between(1, 3), "refractive index of the glass; acrylic: 1.49");
+}
+
+std::shared_ptr<const PixelRays> make_pixel_rays(const Optics& optics, int per_side, const FlatPortConfig& port) {
+  auto rays = std::make_shared<PixelRays>(*make_pixel_rays(optics, per_side));
+  rays->refraction = water_index;
+  rays->starts_S.assign(rays->directions_S.size(), Eigen::Vector3f::Zero());
+  for (std::size_t i = 0; i < rays->directions_S.size(); ++i) {
+    const Vector3d in_air = rays->directions_S[i].cast<double>();
+    const double sine = std::hypot(in_air.y(), in_air.z());
+    // What does not look through the glass sees nothing.
+    if (in_air.x() < 1e-3) rays->directions_S[i].setZero();
+    if (in_air.x() < 1e-3 || sine == 0) {
+      rays->starts_S[i].x() = static_cast<float>(port.distance_m + port.glass_m);
+      continue;
+    }
+    const Vector2d across(in_air.y() / sine, in_air.z() / sine);
+    const double in_glass = sine / port.glass_index, in_water = sine / water_index;
+    const double radius_m =
+        port.distance_m * sine / in_air.x() + port.glass_m * in_glass / std::sqrt(1 - in_glass * in_glass);
+    rays->starts_S[i] =
+        Vector3d(port.distance_m + port.glass_m, radius_m * across.x(), radius_m * across.y()).cast<float>();
+    rays->directions_S[i] =
+        Vector3d(std::sqrt(1 - in_water * in_water), in_water * across.x(), in_water * across.y()).cast<float>();
+  }
+  return rays;
+}
+
 std::shared_ptr<const PixelRays> make_pixel_rays(const Optics& optics, int per_side) {
   auto rays = std::make_shared<PixelRays>();
+  rays->optics.emplace(optics);
   rays->width = optics.width();
   rays->height = optics.height();
   rays->per_side = per_side;

@@ -83,6 +83,17 @@ class Optics {
   double fold_radius_ = 0;  ///< distorted_radius(last_good_), or infinity when it is monotonic everywhere
 };
 
+/// `flat_port:` of a camera: a plane window before the lens, at a right angle to its axis.
+struct FlatPortConfig {
+  double distance_m = 0.02;  ///< from the entrance pupil of the lens to the glass
+  double glass_m = 0.005;    ///< thickness of the glass
+  double glass_index = 1.49;
+  void read(ParamReader& in);
+};
+
+/// Refractive index of water, of all colors.
+inline constexpr double water_index = 1.34;
+
 /// Viewing directions of all pixels of an image, computed once.
 struct PixelRays {
   int width = 0, height = 0;  ///< size of the image, pixels
@@ -90,6 +101,10 @@ struct PixelRays {
   float pixel_angle = 0;      ///< angle between neighboring rays at the center of the image, rad
   /// Unit vectors row by row, width * per_side in each row.  A zero vector marks a pixel outside the field of view.
   std::vector<Eigen::Vector3f> directions_S;
+  /// Where the rays begin, m; empty: at the origin of S.
+  std::vector<Eigen::Vector3f> starts_S;
+  std::optional<Optics> optics;
+  double refraction = 1;  ///< refractive index of the water before a flat port; 1: the rays go on straight
 
   int columns() const { return width * per_side; }
   const Eigen::Vector3f* row(int row) const { return directions_S.data() + std::size_t(row) * std::size_t(columns()); }
@@ -97,5 +112,8 @@ struct PixelRays {
 
 /// Returns per_side x per_side evenly spaced rays for each pixel.
 std::shared_ptr<const PixelRays> make_pixel_rays(const Optics& optics, int per_side);
+/// The same for a camera in water behind a flat port, with a ray from the outer face of the glass in the direction that
+/// it has in the water, by Snell's law at both faces: the camera has no single viewpoint (Treibitz et al. 2012).
+std::shared_ptr<const PixelRays> make_pixel_rays(const Optics& optics, int per_side, const FlatPortConfig& port);
 
 }  // namespace sim

@@ -40,6 +40,33 @@ float line_share(double x, float footprint) {
   return covered;
 }
 
+/// Thresholds of an ordered dither of 8 x 8 pixels, from -0.5 to 0.5 (Bayer 1973).
+std::array<float, 64> bayer_pattern() {
+  std::array<float, 64> pattern{};
+  for (unsigned row = 0; row < 8; ++row)
+    for (unsigned column = 0; column < 8; ++column) {
+      unsigned order = 0;
+      for (unsigned bit = 0; bit < 3; ++bit) {
+        const unsigned x = (column >> bit) & 1, y = (row >> bit) & 1;
+        order |= ((2 * (x ^ y)) | y) << (2 * (2 - bit));
+      }
+      pattern[8 * row + column] = (static_cast<float>(order) + 0.5F) / 64 - 0.5F;
+    }
+  return pattern;
+}
+
+/// Returns the sRGB level of linear light plus a part of a level.
+std::uint8_t dithered(float light, float part) {
+  const std::uint8_t level = srgb_from_linear(light);
+  if (level == 0 || level == 255) return level;
+  // Where the light is between the neighboring levels.
+  const float here = linear_from_srgb(level), up = linear_from_srgb(static_cast<std::uint8_t>(level + 1));
+  const float down = linear_from_srgb(static_cast<std::uint8_t>(level - 1));
+  const float off = light > here ? (light - here) / (up - here) : (light - here) / (here - down);
+  const float value = off + part;
+  return static_cast<std::uint8_t>(level + (value > 0.5F ? 1 : value < -0.5F ? -1 : 0));
+}
+
 }  // namespace
 
 struct Renderer::Tile {
@@ -54,6 +81,7 @@ struct Renderer::Tile {
   std::array<int, tile_rays> shadow_of;  ///< index in `rays`
   std::array<std::uint8_t, tile_rays> blocked, in_shadow;
   WaterRays water;
+  std::array<LinearColor, tile_rays> lit;  ///< light of lamps that is reflected
   // Last ones used, kept from tile to tile.
   Paint paint;
   PosedPart posed;
@@ -103,6 +131,8 @@ void Renderer::clear(Frame& frame) const {
   if (options_.kind == ImageKind::color) empty(frame.light, 3, 0.0F);
   if (options_.kind == ImageKind::depth || (options_.kind == ImageKind::color && options_.with_depth))
     empty(frame.depth_m, 1, nothing_seen_m);
+  if (options_.kind == ImageKind::normals) empty(frame.vectors, 3, 0.0F);
+  if (options_.kind == ImageKind::flow) empty(frame.vectors, 2, 0.0F);
   if (options_.kind == ImageKind::parts || options_.kind == ImageKind::groups) empty(frame.labels, 1, std::uint16_t{0});
 }
 
@@ -117,6 +147,12 @@ void Renderer::render_rows(const Pose& X_WS, int first, int end, float weight, F
   int high = 1;
   while (2 * high * n <= 8 && 2 * high <= end - first) high *= 2;
   add_surfaces();
+  lamps_.clear();
+  for (const Lamp& lamp : options_.lamps) {
+    const Vector3d p_SL_W = X_WS.linear() * lamp.X_SL.translation();
+    const Vector3d axis_W = X_WS.linear() * lamp.X_SL.linear().col(0);
+    lamps_.push_back({p_SL_W.cast<float>(), axis_W.cast<float>(), lamp.color, lamp.spread});
+  }
   // Render rows of tiles, which threads share.
   physics_.scene().prepare();
   const auto render_row = [&](std::size_t i) {
@@ -124,8 +160,13 @@ void Renderer::render_rows(const Pose& X_WS, int first, int end, float weight, F
     render_tiles(X_WS, row, std::min(high, end - row), std::max(1, tile_rays / (high * n * n)), weight, frame);
   };
   const auto rows_of_tiles = static_cast<std::size_t>((std::max(end - first, 0) + high - 1) / high);
-  if (physics_.scene().concurrent()) return for_each_within(rows_of_tiles, render_row);
-  for (std::size_t i = 0; i < rows_of_tiles; ++i) render_row(i);
+  if (physics_.scene().concurrent())
+    for_each_within(rows_of_tiles, render_row);
+  else
+    for (std::size_t i = 0; i < rows_of_tiles; ++i) render_row(i);
+  if (options_.kind == ImageKind::color && options_.water && options_.water->has_particles() && options_.with_depth)
+    options_.water->draw_particles(X_WS, *rays_->optics, rays_->refraction, lamps_,
+                                   {frame.light, frame.depth_m, options_.depth_along_ray, first, end, weight});
 }
 
 void Renderer::render_tiles(const Pose& X_WS, int row, int high, int wide, float weight, Frame& frame) const {
@@ -141,6 +182,8 @@ void Renderer::render_tiles(const Pose& X_WS, int row, int high, int wide, float
       find_shadows(tile);
       fill_light(tile, weight, frame);
       if (options_.with_depth) fill_values(tile, frame);
+    } else if (options_.kind == ImageKind::normals || options_.kind == ImageKind::flow) {
+      fill_vectors(tile, X_WS, frame);
     } else {
       fill_values(tile, frame);
     }
@@ -161,6 +204,8 @@ void Renderer::gather(Tile& tile, const Pose& X_WS) const {
       Ray& ray = tile.rays[tile.seeing];
       ray.origin_W = X_WS.translation();
       ray.direction_W = R_WS * direction_S.cast<double>();
+      if (!rays_->starts_S.empty())
+        ray.origin_W += R_WS * rays_->starts_S[static_cast<std::size_t>(&direction_S - rays_->row(0))].cast<double>();
       ray.range_max_m = options_.range_max_m;
       tile.along_axis[tile.seeing] = direction_S.x();
       tile.number[place] = tile.seeing++;
@@ -197,6 +242,7 @@ void Renderer::find_shadows(Tile& tile) const {
 void Renderer::fill_light(Tile& tile, float weight, Frame& frame) const {
   const int n = rays_->per_side;
   const float share = weight / static_cast<float>(n * n);
+  if (!lamps_.empty() || !options_.water) std::fill_n(tile.lit.begin(), tile.seeing, LinearColor::Zero());
   if (options_.water) light_water(tile);
   int place = 0;
   for (int row = 0; row < tile.rows; ++row)
@@ -207,7 +253,7 @@ void Renderer::fill_light(Tile& tile, float weight, Frame& frame) const {
       if (options_.water)
         light = {tile.water.light[0][i], tile.water.light[1][i], tile.water.light[2][i]};
       else
-        light = light_on(tile, i);
+        light = light_on(tile, i) + tile.lit[static_cast<std::size_t>(i)];
       float* rgb = frame.light.at((tile.column + column) / n, (tile.row + row) / n);
       for (int channel = 0; channel < 3; ++channel) rgb[channel] += share * light[channel];
     }
@@ -231,6 +277,10 @@ void Renderer::light_water(Tile& tile) const {
     for (int channel = 0; channel < 3; ++channel) water.light[channel][i] = light[channel];
   }
   options_.water->light(water);
+  if (lamps_.empty()) return;
+  for (std::size_t i = 0; i < count; ++i)
+    for (int channel = 0; channel < 3; ++channel) water.lit[channel][i] = tile.lit[i][channel];
+  light_lamps(options_.water->water_light(), lamps_, water);
 }
 
 void Renderer::fill_values(const Tile& tile, Frame& frame) const {
@@ -243,7 +293,9 @@ void Renderer::fill_values(const Tile& tile, Frame& frame) const {
       const bool seen = i >= 0 && tile.hits[i].hit();
       if (options_.kind == ImageKind::depth || options_.kind == ImageKind::color) {
         const double factor = seen && !options_.depth_along_ray ? static_cast<double>(tile.along_axis[i]) : 1.0;
-        *frame.depth_m.at(u, v) = seen ? static_cast<float>(tile.hits[i].range_m * factor) : nothing_seen_m;
+        // Depth along the axis counts from the origin of S, range from where the ray begins.
+        const double start_m = rays_->starts_S.empty() || options_.depth_along_ray ? 0 : rays_->starts_S.front().x();
+        *frame.depth_m.at(u, v) = seen ? static_cast<float>(tile.hits[i].range_m * factor + start_m) : nothing_seen_m;
         continue;
       }
       int label = 0;
@@ -303,14 +355,75 @@ LinearColor Renderer::shade(Tile& tile, int number, float footprint_m) const {
   const float open = 0.5F * (1 + normal.z());
   LinearColor light = own * (sky_strength_ * (0.45F + 0.55F * open));
   const float toward = normal.dot(sky_.to_sun_W());
+  if (!lamps_.empty())
+    tile.lit[static_cast<std::size_t>(number)] = lamp_light(own, normal, hit.range_m * ray.direction_W);
   // Add diffuse light of the sun and the highlight (Blinn 1977).
   if (!sky_.sun_is_up() || tile.in_shadow[number] != 0 || toward <= 0) return light;
-  light += own.cwiseProduct(sky_.sun()) * toward;
+  const LinearColor diffuse = own.cwiseProduct(sky_.sun()) * toward;
+  light += options_.water && options_.water->has_caustics() ? diffuse * options_.water->caustic(p_W) : diffuse;
   if (paint.gloss > 0) {
     const Eigen::Vector3f half = (sky_.to_sun_W() - direction).normalized();
     light += sky_.sun() * (paint.gloss * raised_to_64(std::max(0.0F, normal.dot(half))));
   }
   return light;
+}
+
+LinearColor Renderer::lamp_light(const LinearColor& albedo, const Eigen::Vector3f& normal_W,
+                                 const Vector3d& to_hit_W) const {
+  // In air nothing is absorbed.
+  static const WaterLight dry;
+  const WaterLight& water = options_.water && options_.water->is_under() ? options_.water->water_light() : dry;
+  const Eigen::Vector3f p_W = to_hit_W.cast<float>();
+  LinearColor sum = LinearColor::Zero();
+  for (const LampLight& lamp : lamps_) {
+    const Eigen::Vector3f to_lamp_W = lamp.position_W - p_W;
+    const float distance_m = to_lamp_W.norm(), toward = normal_W.dot(to_lamp_W);
+    if (toward <= 0 || distance_m <= 0) continue;
+    sum += lamp_light_at(water, lamp, p_W) * (toward / distance_m);
+  }
+  return albedo.cwiseProduct(sum);
+}
+
+Vector2d Renderer::flow(const Tile& tile, int number, const Pose& X_WS) const {
+  const RayHit& hit = tile.hits[number];
+  const Ray& ray = tile.rays[number];
+  // Motion of the point relative to the camera, seen in its axes.  Where nothing is hit only the camera turns.
+  const Vector3d p_SP_W = hit.hit() ? Vector3d(hit.range_m * ray.direction_W) : ray.direction_W;
+  Vector3d v_SP_W = -motion_.w_WS_W.cross(p_SP_W);
+  if (hit.hit()) {
+    const int body_number = physics_.parts()[static_cast<std::size_t>(hit.part)].body;
+    const Body& body = *physics_.bodies()[static_cast<std::size_t>(body_number)];
+    v_SP_W -= motion_.v_WS_W;
+    if (!body.fixed())
+      v_SP_W += body.v_WB_W() + body.w_WB_W().cross(X_WS.translation() + p_SP_W - body.X_WB().translation());
+  }
+  const Matrix3d R_SW = X_WS.linear().transpose();
+  const Vector3d p_S = R_SW * p_SP_W, v_S = R_SW * v_SP_W;
+  // Central difference over a millionth of the distance.
+  const double speed_mps = v_S.norm();
+  if (speed_mps == 0) return Vector2d::Zero();
+  const double half_s = 1e-6 * p_S.norm() / speed_mps;
+  const auto before = rays_->optics->project(p_S - half_s * v_S), after = rays_->optics->project(p_S + half_s * v_S);
+  return before && after ? Vector2d((*after - *before) / (2 * half_s)) : Vector2d::Zero();
+}
+
+void Renderer::fill_vectors(const Tile& tile, const Pose& X_WS, Frame& frame) const {
+  const Matrix3d R_SW = X_WS.linear().transpose();
+  const int n = rays_->per_side;
+  int place = 0;
+  for (int row = 0; row < tile.rows; ++row)
+    for (int column = 0; column < tile.columns; ++column, ++place) {
+      const int i = tile.number[place];
+      if (i < 0) continue;
+      float* values = frame.vectors.at((tile.column + column) / n, (tile.row + row) / n);
+      if (options_.kind == ImageKind::flow) {
+        const Vector2d flow_pxps = flow(tile, i, X_WS);
+        for (int axis = 0; axis < 2; ++axis) values[axis] = static_cast<float>(flow_pxps[axis]);
+      } else if (tile.hits[i].hit()) {
+        const Vector3d normal_S = R_SW * tile.hits[i].normal_W;
+        for (int axis = 0; axis < 3; ++axis) values[axis] = static_cast<float>(normal_S[axis]);
+      }
+    }
 }
 
 std::string Renderer::label_name(const PhysicsWorld& physics, ImageKind kind, std::uint16_t label) {
@@ -339,13 +452,51 @@ void develop_rows(const FloatImage& light, float gain, int first, int end, Image
   }
 }
 
-float auto_gain(const FloatImage& light) {
+Image8 develop(const FloatImage& light, const LinearColor& gain) {
+  Image8 image(light.width, light.height, light.channels);
+  const float grey = luminance(gain.data());
+  for (std::size_t i = 0; i < light.data.size(); ++i)
+    image.data[i] =
+        srgb_from_linear((light.channels == 3 ? gain[static_cast<Eigen::Index>(i % 3)] : grey) * light.data[i]);
+  return image;
+}
+
+void develop_rows_dithered(const FloatImage& light, const LinearColor& gain, int first, int end, Image8& image) {
+  static const std::array<float, 64> pattern = bayer_pattern();
+  for (int row = first; row < end; ++row)
+    for (int column = 0; column < light.width; ++column) {
+      const float* from = light.at(column, row);
+      const float rgb[3] = {gain[0] * from[0], gain[1] * from[1], gain[2] * from[2]};
+      const float threshold = pattern[static_cast<std::size_t>(8 * (row % 8) + column % 8)];
+      std::uint8_t* to = image.at(column, row);
+      if (image.channels == 1) to[0] = dithered(luminance(rgb), threshold);
+      for (int i = 0; i < image.channels && image.channels == 3; ++i) to[i] = dithered(rgb[i], threshold);
+    }
+}
+
+float auto_gain(const FloatImage& light, float max_gain) {
   // Sum in double precision to limit the rounding error.
   double sum = 0;
   const std::size_t pixels = light.data.size() / 3;
   for (std::size_t i = 0; i < pixels; ++i) sum += std::min(1.0F, luminance(light.data.data() + 3 * i));
   const double mean = pixels > 0 ? sum / static_cast<double>(pixels) : 0;
-  return static_cast<float>(std::clamp(0.18 / std::max(mean, 1e-6), 1.0 / 64, 64.0));
+  return static_cast<float>(std::clamp(0.18 / std::max(mean, 1e-6), 1.0 / 64, static_cast<double>(max_gain)));
+}
+
+LinearColor gray_world_gains(const FloatImage& light) {
+  double sums[3] = {0, 0, 0};
+  for (std::size_t i = 0; i + 2 < light.data.size(); i += 3)
+    for (std::size_t channel = 0; channel < 3; ++channel) sums[channel] += light.data[i + channel];
+  const double brightest = std::max({sums[0], sums[1], sums[2]});
+  if (!(brightest > 0)) return LinearColor::Ones();
+  float means[3];
+  LinearColor gains;
+  for (int i = 0; i < 3; ++i) {
+    means[i] = static_cast<float>(sums[i] / brightest);
+    gains[i] = 1 / std::max(means[i], 1.0F / 64);
+  }
+  const float balanced[3] = {gains[0] * means[0], gains[1] * means[1], gains[2] * means[2]};
+  return gains * (luminance(means) / luminance(balanced));
 }
 
 FloatImage grey_of(const FloatImage& light) {

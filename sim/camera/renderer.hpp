@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "sim/camera/lamp.hpp"
 #include "sim/camera/optics.hpp"
 #include "sim/camera/sky_light.hpp"
 #include "sim/camera/texture.hpp"
+#include "sim/camera/water_light.hpp"
 #include "sim/image/image.hpp"
 #include "sim/physics/physics_world.hpp"
 #include "sim/scene/light.hpp"
@@ -17,7 +19,7 @@ namespace sim {
 class WaterView;
 
 /// Quantity stored in the pixels of an image.
-enum class ImageKind { color, depth, parts, groups };
+enum class ImageKind { color, depth, parts, groups, normals, flow };
 
 /// Options of a renderer.
 struct RenderOptions {
@@ -27,18 +29,26 @@ struct RenderOptions {
   double range_max_m = 10'000;   ///< along the ray; parts beyond it are invisible
   bool depth_along_ray = false;  ///< true: depth is the range; false: distance along the optical axis (x of S)
   LightConfig light;
-  // Not used by cameras of vehicles.
   const WaterView* water = nullptr;  ///< water in color images; null: it is invisible.  Must outlive the renderer
   bool with_depth = false;           ///< color images have depth, too
+  std::vector<Lamp> lamps;           ///< light of color images, without shadows
+};
+
+/// Velocity of the camera, for optical flow.
+struct CameraMotion {
+  Vector3d v_WS_W = Vector3d::Zero();  ///< m/s
+  Vector3d w_WS_W = Vector3d::Zero();  ///< rad/s
 };
 
 /// Image being rendered.  Depending on the kind of the image one member is filled and the others stay empty: `light`
-/// holds linear RGB, `depth_m` depth (infinity: no hit), `labels` a segmentation (see Renderer::label_name).
+/// holds linear RGB, `depth_m` depth (infinity: no hit), `labels` a segmentation (see Renderer::label_name), `vectors`
+/// normals or optical flow.  Normals are unit vectors x, y, z in S, zero without a hit.  Optical flow is the velocity
+/// of what a pixel sees in the image, to the right and downwards, px/s; where nothing is hit, that of the horizon.
 struct Frame {
   FloatImage light;
   FloatImage depth_m;
   Image16 labels;
-  void visit_state(StateArchive& archive) { archive(light, depth_m, labels); }
+  FloatImage vectors;
 };
 
 /// Renders images of a world by ray casting.  Surfaces are lit by the sun (Lambert's law, with shadows) and by the sky,
@@ -58,6 +68,8 @@ class Renderer {
   /// Renders rows [first, end) with the camera at X_WS and the world in its present state.  Light is multiplied by
   /// `weight` and added; depth and labels are replaced.  The image is complete when end == height.
   void render_rows(const Pose& X_WS, int first, int end, float weight, Frame& frame);
+  /// Sets the velocity of the camera at the next rows, for optical flow.
+  void set_motion(const CameraMotion& motion) { motion_ = motion; }
   /// Clears the frame and renders all rows.
   void render(const Pose& X_WS, Frame& frame);
 
@@ -106,6 +118,12 @@ class Renderer {
   const Paint& paint(Tile& tile, int part, int material) const;
   /// Returns the diffuse color at a hit; `footprint_m`: size of the projected pixel.
   LinearColor albedo(Tile& tile, const Paint& paint, const RayHit& hit, const Vector3d& p_W, float footprint_m) const;
+  /// Returns the light of lamps that a hit reflects, at its place; `to_hit_W`: from the camera.
+  LinearColor lamp_light(const LinearColor& albedo, const Eigen::Vector3f& normal_W, const Vector3d& to_hit_W) const;
+  /// Returns the optical flow of a ray of the tile, px/s.
+  Vector2d flow(const Tile& tile, int ray, const Pose& X_WS) const;
+  /// Writes normals or optical flow of a tile to the frame.
+  void fill_vectors(const Tile& tile, const Pose& X_WS, Frame& frame) const;
   /// Returns the light reflected at the hit of a ray of the tile.
   LinearColor shade(Tile& tile, int ray, float footprint_m) const;
   /// Returns the light on a ray of the tile, without water.
@@ -131,14 +149,24 @@ class Renderer {
   SkyLight sky_;
   Vector3d to_sun_W_;
   float sky_strength_;
+  std::vector<LampLight> lamps_;  // in the directions of the world, for the rows being rendered
+  CameraMotion motion_;
 };
 
 /// Converts linear light to sRGB: multiplied by `gain`, clipped at white.
 Image8 develop(const FloatImage& light, float gain);
+/// The same with a gain of each color.  An image of one channel has the mean of the gains, by luminance.
+Image8 develop(const FloatImage& light, const LinearColor& gain);
+/// Does so in rows [first, end), with the gain of each color, and adds a pattern of less than a level that hides steps
+/// of smooth colors: the ordered dither of Bayer (1973).
+void develop_rows_dithered(const FloatImage& light, const LinearColor& gain, int first, int end, Image8& image);
 /// Does so in rows [first, end).  An `image` of one channel gets the luminance of light of three.
 void develop_rows(const FloatImage& light, float gain, int first, int end, Image8& image);
-/// Returns the gain that brings the mean luminance to middle grey, 18 %.
-float auto_gain(const FloatImage& light);
+/// Returns the gain that brings the mean luminance to middle grey, 18 %, from 1/64 to `max_gain`.
+float auto_gain(const FloatImage& light, float max_gain = 64);
+/// Returns gains of the colors that give all the same mean, in the mean of the luminance 1 (gray world, Buchsbaum
+/// 1980).  None is more than 64 times another.
+LinearColor gray_world_gains(const FloatImage& light);
 /// Returns the luminance of an RGB image as one channel.
 FloatImage grey_of(const FloatImage& light);
 

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "sim/base/processor.hpp"
+#include "sim/camera/optics.hpp"
 
 namespace sim {
 
@@ -18,7 +19,7 @@ namespace {
 #define SHOAL_INLINE [[gnu::always_inline]] inline
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
-constexpr float refractive_index = 1.34F;
+constexpr auto refractive_index = static_cast<float>(water_index);
 constexpr float reflected_at_right_angle = 0.021F;  ///< ((n - 1) / (n + 1))^2
 constexpr float farthest_m = 1e4F;                  ///< path in water after which nothing is left
 
@@ -182,7 +183,98 @@ SHOAL_INLINE void light_all(const WaterLight& water, const SkyLight& sky, WaterR
     light_above(constants, copy[0], rays);
 }
 
+/// Adds what lamps light up, seen through the water.
+SHOAL_INLINE void show_lit(const float (&attenuation)[3], bool is_under, WaterRays& rays) {
+  for (int color = 0; color < 3; ++color)
+    for (int i = 0; i < WaterRays::size; ++i) {
+      const bool leaves = rays.crossing_m[i] < rays.range_m[i];
+      const float wet_m = is_under ? rays.range_m[i] : rays.range_m[i] - rays.crossing_m[i];
+      const float path_m = smaller(is_under || leaves ? wet_m : 0, farthest_m);
+      const float seen = exponential(-attenuation[color] * path_m) * rays.lit[color][i];
+      rays.light[color][i] += is_under && leaves ? 0 : seen;
+    }
+}
+
+/// Path of each ray as an angle seen from a lamp.
+struct LampPath {
+  WaterRays::Values along_m;    ///< to the point nearest to the lamp
+  WaterRays::Values off_m;      ///< of that point from the lamp
+  WaterRays::Values first_tan;  ///< tangent of the angle in the middle of the first part
+  WaterRays::Values turn_tan;   ///< tangent of a part
+  WaterRays::Values turn;       ///< a part, rad
+};
+
+constexpr int lamp_parts = 8;
+
+LampPath lamp_path(const LampLight& lamp, const WaterRays& rays) {
+  constexpr float nearest_m = 0.02F;
+  LampPath path;
+  for (int i = 0; i < WaterRays::size; ++i) {
+    const Eigen::Vector3f direction(rays.direction_W[0][i], rays.direction_W[1][i], rays.direction_W[2][i]);
+    const float along_m = direction.dot(lamp.position_W);
+    const float off_m = std::sqrt(std::max(lamp.position_W.squaredNorm() - along_m * along_m, nearest_m * nearest_m));
+    const float end_m = std::min({rays.crossing_m[i], rays.range_m[i], farthest_m});
+    const float first = std::atan(-along_m / off_m), last = std::atan((end_m - along_m) / off_m);
+    path.along_m[i] = along_m, path.off_m[i] = off_m;
+    path.turn[i] = (last - first) / lamp_parts;
+    path.turn_tan[i] = std::tan(path.turn[i]);
+    path.first_tan[i] = std::tan(first + 0.5F * path.turn[i]);
+  }
+  return path;
+}
+
+/// Adds what the water scatters of the light of a lamp.
+SHOAL_INLINE void scatter(const WaterLight& water, const LampLight& lamp, const LampPath& path, WaterRays& rays) {
+  constexpr float g = 0.924F;
+  constexpr float equally = 0.25F;  ///< pi times the phase function of equal scattering
+  const float x = lamp.position_W.x(), y = lamp.position_W.y(), z = lamp.position_W.z();
+  const float axis_x = lamp.axis_W.x(), axis_y = lamp.axis_W.y(), axis_z = lamp.axis_W.z(), spread = lamp.spread;
+  float attenuation[3], particles[3], molecules[3];
+  for (int color = 0; color < 3; ++color) {
+    attenuation[color] = water.attenuation[color];
+    particles[color] = lamp.color[color] * water.particles[color];
+    molecules[color] = lamp.color[color] * water.molecules[color];
+  }
+  WaterRays::Values sum[3] = {}, tangent;
+  for (int i = 0; i < WaterRays::size; ++i) tangent[i] = path.first_tan[i];
+  for (int part = 0; part < lamp_parts; ++part)
+    for (int i = 0; i < WaterRays::size; ++i) {
+      const float t = tangent[i], secant = std::sqrt(1 + t * t);
+      const float range_m = path.along_m[i] + path.off_m[i] * t, distance_m = path.off_m[i] * secant;
+      // From the lamp to the point; it scatters back against the direction of the ray.
+      const float inverse = 1 / distance_m;
+      const float cosine_axis =
+          inverse * (axis_x * (range_m * rays.direction_W[0][i] - x) + axis_y * (range_m * rays.direction_W[1][i] - y) +
+                     axis_z * (range_m * rays.direction_W[2][i] - z));
+      const float cosine = -t / secant;
+      const float base = 1 + g * g - 2 * g * cosine;
+      const float forward = equally * (1 - g * g) / (base * std::sqrt(base));
+      const float strength = exponential(smaller(spread * (cosine_axis - 1), 0)) * path.turn[i] / path.off_m[i];
+      for (int color = 0; color < 3; ++color)
+        sum[color][i] += strength * (particles[color] * forward + molecules[color] * equally) *
+                         exponential(-attenuation[color] * (range_m + distance_m));
+      tangent[i] = (t + path.turn_tan[i]) / (1 - t * path.turn_tan[i]);
+    }
+  for (int color = 0; color < 3; ++color)
+    for (int i = 0; i < WaterRays::size; ++i) rays.light[color][i] += sum[color][i];
+}
+
+SHOAL_INLINE void lamps_all(const WaterLight& water, std::span<const LampLight> lamps, WaterRays& rays) {
+  const float attenuation[3] = {water.attenuation[0], water.attenuation[1], water.attenuation[2]};
+  show_lit(attenuation, water.is_under, rays);
+  if (!water.is_under) return;
+  for (const LampLight& lamp : lamps) scatter(water, lamp, lamp_path(lamp, rays), rays);
+}
+
 #undef SHOAL_INLINE
+
+void lamps_baseline(const WaterLight& water, std::span<const LampLight> lamps, WaterRays& rays) {
+  lamps_all(water, lamps, rays);
+}
+
+SHOAL_AVX2 void lamps_avx2(const WaterLight& water, std::span<const LampLight> lamps, WaterRays& rays) {
+  lamps_all(water, lamps, rays);
+}
 
 void light_baseline(const WaterLight& water, const SkyLight& sky, WaterRays& rays) {
   light_all(water, sky, rays);
@@ -203,6 +295,11 @@ LinearColor daylight_at(const WaterLight& water, float depth_m) {
 void light_water(const WaterLight& water, const SkyLight& sky, WaterRays& rays) {
   static const auto best = has_avx2() ? light_avx2 : light_baseline;
   best(water, sky, rays);
+}
+
+void light_lamps(const WaterLight& water, std::span<const LampLight> lamps, WaterRays& rays) {
+  static const auto best = has_avx2() ? lamps_avx2 : lamps_baseline;
+  best(water, lamps, rays);
 }
 
 }  // namespace sim

@@ -6,13 +6,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/random/random.hpp"
+
 namespace sim {
 
 namespace {
 
 constexpr int grid_points = 128;
 constexpr int lanes = 8;
-constexpr double grid_range_m = 2500;  ///< waves farther away only roughen the surface
 
 /// Share of a wave that a grid shows: all of it from 8 points in a wave length on, nothing below 4.
 double shown_share(double k_radpm, double spacing_m) {
@@ -22,36 +23,70 @@ double shown_share(double k_radpm, double spacing_m) {
 
 }  // namespace
 
-WaterOptics water_optics(double visibility_m) {
-  const LinearColor pure_absorption(0.340F, 0.0565F, 0.00922F), pure_scattering(0.0010F, 0.0019F, 0.0045F);
-  const LinearColor dissolved(0.003F, 0.015F, 0.06F);  // absorption per scattering of particles
-  constexpr double clearest_m = 60;
-  // The particles make up what pure water lacks of the attenuation at 550 nm.
-  const auto desired = static_cast<float>(4.8 / std::min(visibility_m, clearest_m));
-  const float particles = std::max(0.0F, (desired - pure_absorption.y() - pure_scattering.y()) / (1 + dissolved.y()));
-  WaterOptics optics;
-  optics.absorption = pure_absorption + particles * dissolved;
-  optics.scattering = pure_scattering + LinearColor::Constant(particles);
-  const auto thinner = static_cast<float>(std::min(1.0, clearest_m / visibility_m));
-  optics.absorption *= thinner;
-  optics.scattering *= thinner;
-  optics.attenuation = optics.absorption + optics.scattering;
-  const auto squares =
-      optics.absorption.array().square() + 0.256F * (optics.absorption.array() * optics.scattering.array());
-  optics.downward = squares.sqrt().matrix();
-  return optics;
-}
-
-WaterView::WaterView(const Medium& medium, const LightConfig& light, double visibility_m)
+WaterView::WaterView(const Medium& medium, const LightConfig& light, const WaterLook& look)
     : medium_(medium),
-      optics_(water_optics(visibility_m)),
+      optics_(look.optics),
       sky_(light),
-      day_(static_cast<float>(light.sky + std::max(0.0, light.to_sun_W().z()) * light.sun)) {
+      day_(static_cast<float>(light.sky + std::max(0.0, light.to_sun_W().z()) * light.sun)),
+      waves_range_m_(look.waves_range_m),
+      has_caustics_(look.caustics && sky_.sun_is_up()),
+      snow_(look.particles_per_m3, look.seed) {
   light_.attenuation = optics_.attenuation;
   light_.downward = optics_.downward;
   light_.at_surface = 0.25F * day_ * optics_.scattering;
   if (sky_.sun_is_up()) light_.sun = sky_.sun();
+  light_.molecules = optics_.molecular;
+  light_.particles = optics_.scattering - optics_.molecular;
   light_.wind_slope = static_cast<float>(0.003 + 0.00512 * medium.mean_wind_mps());
+  if (has_caustics_) make_ripples(look.seed);
+}
+
+void WaterView::make_ripples(std::uint64_t seed) {
+  // Sunlight under water, by Snell's law.
+  const Eigen::Vector3f& sun = sky_.to_sun_W();
+  const Eigen::Vector2f across = sun.head<2>() / static_cast<float>(water_index);
+  sun_slant_ = across / std::sqrt(1 - across.squaredNorm());
+  Random random(seed, "caustics");
+  constexpr double longest_m = 2, shortest_m = 0.2;
+  const auto count = static_cast<double>(ripples_.size());
+  const double slope = std::sqrt(2 * static_cast<double>(light_.wind_slope) / count);
+  for (std::size_t i = 0; i < ripples_.size(); ++i) {
+    const double length_m = longest_m * std::pow(shortest_m / longest_m, static_cast<double>(i) / (count - 1));
+    const double k_radpm = 2 * std::numbers::pi / length_m, direction_rad = 2 * std::numbers::pi * random.uniform();
+    Ripple& ripple = ripples_[i];
+    ripple.x_radpm = static_cast<float>(k_radpm * std::cos(direction_rad));
+    ripple.y_radpm = static_cast<float>(k_radpm * std::sin(direction_rad));
+    ripple.omega_radps = static_cast<float>(std::sqrt(9.81 * k_radpm));
+    ripple.phase_rad = static_cast<float>(2 * std::numbers::pi * random.uniform());
+    // Curvature of the surface times the share of its slope by which light is bent.
+    ripple.focus_pm = static_cast<float>(slope * k_radpm * (1 - 1 / water_index));
+  }
+}
+
+float WaterView::caustic(const Vector3d& p_W) const {
+  const auto depth_m = static_cast<float>(level_m_ - p_W.z());
+  if (depth_m <= 0) return 1;
+  const float x_m = static_cast<float>(p_W.x()) + depth_m * sun_slant_.x();
+  const float y_m = static_cast<float>(p_W.y()) + depth_m * sun_slant_.y();
+  // The width of the sun and scattering smooth the light of short ripples.
+  constexpr float smooth_per_m = 0.015F;
+  float sum = 0, variance = 0;
+  for (const Ripple& ripple : ripples_) {
+    const float k_squared = ripple.x_radpm * ripple.x_radpm + ripple.y_radpm * ripple.y_radpm;
+    const float width_m = smooth_per_m * depth_m, blurred = 1 + 0.5F * k_squared * width_m * width_m;
+    const float focus = depth_m * ripple.focus_pm / (blurred * blurred);
+    sum += focus * std::cos(ripple.x_radpm * x_m + ripple.y_radpm * y_m - ripple.now_rad);
+    variance += 0.5F * focus * focus;
+  }
+  constexpr float max_variance = 0.5F;
+  const float scale = std::sqrt(std::min(1.0F, max_variance / std::max(variance, 1e-9F)));
+  return std::exp(scale * sum - 0.5F * scale * scale * variance);
+}
+
+void WaterView::draw_particles(const Pose& X_WS, const Optics& optics, double refraction,
+                               std::span<const LampLight> lamps, const MarineSnow::Target& target) const {
+  if (!is_under() || snow_.empty()) return;
+  snow_.draw(X_WS, now_s_, optics, refraction, light_, day_ * daylight(X_WS.translation().z()), lamps, target);
 }
 
 void WaterView::update(const Vector3d& eye_W) {
@@ -62,22 +97,42 @@ void WaterView::update(const Vector3d& eye_W) {
   highest_m_ = medium_.highest_surface_m() - level_m_;
   light_.is_under = medium_.in_water(eye_W);
   light_.eye_depth_m = static_cast<float>(level_m_ - eye_W.z());
-  const float min_downward = optics_.downward.minCoeff(), depth_m = std::max(0.0F, light_.eye_depth_m);
-  gain_ = is_under() ? std::min(1.6F / std::exp(-min_downward * depth_m), 1e4F) : 1;
+  set_gain();
+  for (Ripple& ripple : ripples_)
+    ripple.now_rad = static_cast<float>(
+        std::fmod(static_cast<double>(ripple.omega_radps) * now_s_, 2 * std::numbers::pi) - ripple.phase_rad);
   light_.at_eye = light_.at_surface.cwiseProduct(daylight(eye_W.z()));
   // Grids, each twice as wide as the one before.
   levels_.clear();
   if (!medium_.has_waves()) return;
+  // From a depth at which nothing is left of the light of the surface its waves are not seen.
+  constexpr float least_share = 1e-4F;
+  const float over_m = light_.eye_depth_m - static_cast<float>(highest_m_);
+  if (is_under() && std::exp(-light_.attenuation.minCoeff() * over_m) < least_share) return;
   double slopes = 0;
   for (const WaveComponent& wave : medium_.wave_components())
     slopes += std::pow(wave.amplitude_m * wave.k_radpm, 2) / 2;
   steep_ = 2 * std::sqrt(slopes);
   const double height_m = std::abs(eye_W.z() - level_m_);
   double spacing_m = std::clamp(0.02 * height_m, 0.06, 2.0);
-  for (double half_m = 0; half_m < grid_range_m; spacing_m *= 2) {
+  for (double half_m = 0; half_m < waves_range_m_; spacing_m *= 2) {
     half_m = 0.5 * grid_points * spacing_m;
     levels_.emplace_back().spacing_m = spacing_m;
     fill(levels_.back());
+  }
+}
+
+void WaterView::set_gain() {
+  gain_.setOnes();
+  if (!is_under()) return;
+  constexpr float subject_m = 3, max_ratio = 24;
+  const float depth_m = std::max(0.0F, light_.eye_depth_m);
+  const float min_downward = optics_.downward.minCoeff(), min_attenuation = optics_.attenuation.minCoeff();
+  const float brightest = std::min(1.6F * std::exp(min_downward * depth_m), 1e4F);
+  for (int i = 0; i < 3; ++i) {
+    const float lost =
+        (optics_.downward[i] - min_downward) * depth_m + (optics_.attenuation[i] - min_attenuation) * subject_m;
+    gain_[i] = brightest * std::min(std::exp(lost), max_ratio);
   }
 }
 
@@ -198,7 +253,7 @@ double WaterView::wave_crossing_m(const Vector3d& direction_W, double range_max_
   constexpr double none = std::numeric_limits<double>::infinity();
   // Interval in which the ray is between the highest crest and the deepest trough.
   const double z_m = eye_W_.z() - level_m_, down = direction_W.z();
-  double from_m = 0, to_m = std::min(range_max_m, 4 * grid_range_m);
+  double from_m = 0, to_m = std::min(range_max_m, 4 * waves_range_m_);
   if (std::abs(down) > 1e-9) {
     const double a_m = (highest_m_ - z_m) / down, b_m = (-highest_m_ - z_m) / down;
     from_m = std::max(0.0, std::min(a_m, b_m));

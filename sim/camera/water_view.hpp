@@ -1,56 +1,68 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "sim/base/math.hpp"
+#include "sim/camera/marine_snow.hpp"
 #include "sim/camera/texture.hpp"
 #include "sim/camera/water_light.hpp"
+#include "sim/camera/water_optics.hpp"
 #include "sim/medium/medium.hpp"
 #include "sim/scene/light.hpp"
 #include "sim/scene/scene.hpp"
 
 namespace sim {
 
-/// Optical properties of water at 650, 550 and 450 nm: red, green and blue, 1/m.
-struct WaterOptics {
-  LinearColor absorption = LinearColor::Zero();
-  LinearColor scattering = LinearColor::Zero();
-  LinearColor attenuation = LinearColor::Zero();  ///< of a beam: the sum of both
-  LinearColor downward = LinearColor::Zero();     ///< of daylight with depth
+/// What a WaterView shows.
+struct WaterLook {
+  WaterOptics optics;
+  double waves_range_m = 2500;  ///< waves farther away only roughen the surface
+  bool caustics = false;        ///< sunlight that ripples focus
+  double particles_per_m3 = 0;  ///< marine snow
+  std::uint64_t seed = 0;       ///< of caustics and particles
 };
-
-/// Returns the properties of water in which a black target disappears at `visibility_m`, seen horizontally: 4.8 over
-/// the beam attenuation at 550 nm (Zaneveld and Pegau 2003).  Absorption of pure water after Pope and Fry (1997),
-/// scattering after Morel (1974); particles scatter all colors equally and come with dissolved matter that absorbs blue
-/// (Bricaud et al. 1981).  Daylight with depth after Kirk (1984).  More than the 60 m of the clearest natural water
-/// thin all properties equally.
-WaterOptics water_optics(double visibility_m);
 
 /// Look of water in images: its surface with the waves of the run, reflections of the sky, and the light in it.  Only
 /// single scattering and straight rays: objects seen through the surface are where they would be without refraction.
 class WaterView {
  public:
   /// `medium` must outlive this and have water.
-  WaterView(const Medium& medium, const LightConfig& light, double visibility_m);
+  WaterView(const Medium& medium, const LightConfig& light, const WaterLook& look);
 
   /// Computes the surface around a camera at the present time of the medium.  To be called before each image.
   void update(const Vector3d& eye_W);
 
   /// Whether the camera is under water.
   bool is_under() const { return light_.is_under; }
-  /// Returns the exposure of the image: under water it follows the daylight at the depth of the camera.
-  float gain() const { return gain_; }
+  /// Returns the exposure of the image, a gain of each color: under water it follows the daylight at the depth of the
+  /// camera and the water before what it shows, so that a gray surface 3 m away looks gray.  The gain of a color is at
+  /// most 24 times that of another.
+  const LinearColor& gain() const { return gain_; }
   /// Returns the range at which a ray from the camera crosses the surface; infinity: not before `range_max_m`.
   double crossing_m(const Vector3d& direction_W, double range_max_m) const;
   /// Returns the share of daylight at a height.
   LinearColor daylight(double z_m) const;
+  /// Whether sunlight under water has a pattern.
+  bool has_caustics() const { return has_caustics_; }
+  /// Returns the factor of the sunlight at a point by the focusing of ripples; 1 above the water.  Its mean over a
+  /// horizontal plane is 1.  Ripples of lengths from 0.2 to 2 m share the mean square slope of the wind (Cox and Munk
+  /// 1954); the light is that of their curvature, to first order in the depth, with a log-normal distribution (as in
+  /// Shen et al. 2012), and smooths out with depth.
+  float caustic(const Vector3d& p_W) const;
+  /// Draws particles before a camera under water into rows of its image.
+  void draw_particles(const Pose& X_WS, const Optics& optics, double refraction, std::span<const LampLight> lamps,
+                      const MarineSnow::Target& target) const;
+  bool has_particles() const { return !snow_.empty(); }
 
   /// Sets directions, crossings and the surface there of `lit`, for rays from the camera; lit.range_m is already set.
   void find_surface(std::span<const Ray> rays, WaterRays& lit) const;
   /// Replaces the light of what the rays see by that of the rays.
   void light(WaterRays& rays) const { light_water(light_, sky_, rays); }
+  const WaterLight& water_light() const { return light_; }
 
  private:
   /// Surface at a point of a grid.
@@ -77,6 +89,16 @@ class WaterView {
     float share = 0;
   };
 
+  /// Ripple that focuses sunlight.
+  struct Ripple {
+    float x_radpm = 0, y_radpm = 0;  ///< wave number
+    float omega_radps = 0, phase_rad = 0;
+    float focus_pm = 0;  ///< amplitude of the change of the light with depth, 1/m
+    float now_rad = 0;   ///< phase at the time of the image
+  };
+
+  void make_ripples(std::uint64_t seed);
+  void set_gain();
   void fill(Level& level) const;
   Cell cell_of(const Level& level, double x_m, double y_m) const;
   Place place_of(const Vector3d& p_W) const;
@@ -93,10 +115,15 @@ class WaterView {
   Vector3d eye_W_ = Vector3d::Zero();
   double level_m_ = 0;    // of the still surface
   double highest_m_ = 0;  // bound of waves over it
-  float gain_ = 1;
+  LinearColor gain_ = LinearColor::Ones();
   double now_s_ = 0;
   double steep_ = 0;  // slope that waves seldom exceed: twice the root mean square
   std::vector<Level> levels_;
+  double waves_range_m_;
+  bool has_caustics_;
+  std::array<Ripple, 8> ripples_;
+  Eigen::Vector2f sun_slant_ = Eigen::Vector2f::Zero();  // horizontal way of sunlight per meter of depth
+  MarineSnow snow_;
 };
 
 }  // namespace sim

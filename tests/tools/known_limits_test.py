@@ -130,8 +130,10 @@ class Formats(unittest.TestCase):
         self.assertLacks({"properties": self.device("marine_radar")}, "side_lobe", "multipath", "lobing", "rain", "doppler",
                          "correlation", "material")
 
-    def test_cameras_see_no_water(self):
-        self.assertLacks({"properties": self.device("camera")}, "water", "jerlov", "scatter", "attenuation", "gpu")
+    def test_cameras_see_water_only_by_a_key(self):
+        self.assertLacks({"properties": self.device("camera")}, "gpu")
+        self.assertNotIn("water", self.definitions["device_camera"].get("required", []))
+        self.assertNotIn("default", self.device("camera")["water"])
         self.assertLacks([self.world["light"], self.world["materials"]], "reflection", "refract", "soft", "water")
 
     def test_the_autopilot_names_no_sensor(self):

@@ -159,7 +159,7 @@ class MountedRig final : public CameraRig {
     SceneView view = view_of_camera(world_, name_);
     scale(view.optics);
     view.antialias = std::max(view.antialias, like_.antialias);
-    view.visibility_m = like_.visibility_m;
+    if (!view.water) view.water = like_.water;
     return view_ = view;
   }
 
@@ -224,6 +224,9 @@ SceneView view_of_camera(const sim::World& world, const std::string& name) {
     view.X_WS = body.X_WB() * config.X_BS();
     view.options = camera->render_options();
     view.grey = camera->params().image == devices::Camera::Kind::grey;
+    view.water = camera->water_look();
+    view.follows_daylight = !view.water;
+    view.flat_port = camera->params().flat_port;
     view.antialias = camera->params().antialias;
     view.gain = static_cast<float>(camera->params().exposure.gain);
     return view;

@@ -220,7 +220,7 @@ SceneView film_view(const FilmOptions& options, const sim::World& world) {
   view.optics.height = options.format.height;
   view.optics.fov_rad = options.fov_rad;
   view.antialias = options.antialias;
-  view.visibility_m = options.visibility_m;
+  if (options.visibility_m) view.water = sim::WaterLook{sim::water_optics(*options.visibility_m)};
   view.options.light = world.config().light;
   return view;
 }

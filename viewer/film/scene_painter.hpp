@@ -21,8 +21,10 @@ struct SceneView {
   bool grey = false;
   int antialias = 2;
   float gain = 1;
-  /// Distance at which a black target disappears in the water; none: the water is invisible.
-  std::optional<double> visibility_m;
+  std::optional<sim::WaterLook> water;  ///< none: the water is invisible
+  /// Exposure under water follows the daylight at the depth of the camera, color by color.
+  bool follows_daylight = true;
+  std::optional<sim::FlatPortConfig> flat_port;
 };
 
 /// Image of a scene with the distance of each pixel along the optical axis (infinity: nothing there), for overlays.

@@ -57,6 +57,11 @@ sim::Vector3d parse_point(const char* option, const std::string& text) {
   return *point;
 }
 
+std::optional<sim::WaterLook> water_of(const SnapArguments& arguments) {
+  if (!arguments.visibility_m) return std::nullopt;
+  return sim::WaterLook{sim::water_optics(*arguments.visibility_m)};
+}
+
 SnapView free_view(const SnapArguments& arguments, const sim::World& world) {
   const ImageSize size = parse_image_size(arguments.size);
   SnapView view;
@@ -64,7 +69,7 @@ SnapView free_view(const SnapArguments& arguments, const sim::World& world) {
   view.scene.optics.height = size.height;
   view.scene.optics.fov_rad = sim::degrees_to_radians(arguments.fov_deg);
   view.scene.options.light = world.config().light;
-  view.scene.visibility_m = arguments.visibility_m;
+  view.scene.water = water_of(arguments);
   if (arguments.eye.empty()) {
     view.overview = viewer::overview_of(world, view.scene.optics, arguments.all);
     view.scene.X_WS = view.overview->X_WS;
@@ -77,11 +82,13 @@ SnapView free_view(const SnapArguments& arguments, const sim::World& world) {
   return view;
 }
 
-/// Returns the view of a camera of a vehicle; with --visibility, with water, which the camera itself does not see.
+/// Returns the view of a camera of a vehicle; with --visibility, with this water in place of that of the camera.
 SnapView camera_view(const SnapArguments& arguments, const sim::World& world) {
   try {
     SnapView view{viewer::view_of_camera(world, arguments.from), std::nullopt};
-    if (!arguments.visibility.empty()) view.scene.visibility_m = arguments.visibility_m;
+    if (arguments.visibility.empty()) return view;
+    view.scene.water = water_of(arguments);
+    view.scene.follows_daylight = true;
     return view;
   } catch (const viewer::CameraError& error) {
     const std::string text = error.what();
