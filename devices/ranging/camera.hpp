@@ -66,7 +66,7 @@ class Camera final : public sim::Sensor {
     std::vector<std::string> see_through;       ///< part categories
     std::optional<sim::WaterLookConfig> water;  ///< unset: the water is invisible
     std::vector<sim::LampConfig> lamps;
-    std::optional<sim::FlatPortConfig> flat_port;  ///< unset: rays in water go on as in air, as behind a dome
+    std::optional<sim::FlatPortConfig> flat_port;  ///< unset: rays continue in water as in air, as behind a dome
     std::string right_of;                          ///< left camera of a stereo pair; empty: no stereo pair
     void read(sim::ParamReader& in);
     /// Returns the size of the pixels of an image in bytes; 0 for compressed images.

@@ -13,8 +13,8 @@
 namespace sim {
 
 /// Particles in the water before a camera: discs of 0.5 to 2 mm, as many in each cell of a grid that sinks at the speed
-/// of marine snow (74 m in a day, Alldredge and Silver 1988).  Each is a function of the seed and its cell, so that all
-/// cameras of a run see the same ones.  They do not drift with the current.
+/// of marine snow (74 m in a day, Alldredge and Gotschalk 1988).  Each is a function of the seed and its cell, so that
+/// all cameras of a run see the same ones.  They do not drift with the current.
 class MarineSnow {
  public:
   MarineSnow(double per_m3, std::uint64_t seed) : per_m3_(per_m3), seed_(seed) {}

@@ -104,7 +104,7 @@ struct PixelRays {
   /// Where the rays begin, m; empty: at the origin of S.
   std::vector<Eigen::Vector3f> starts_S;
   std::optional<Optics> optics;
-  double refraction = 1;  ///< refractive index of the water before a flat port; 1: the rays go on straight
+  double refraction = 1;  ///< refractive index of the water before a flat port; 1: the rays continue straight
 
   int columns() const { return width * per_side; }
   const Eigen::Vector3f* row(int row) const { return directions_S.data() + std::size_t(row) * std::size_t(columns()); }

@@ -206,21 +206,30 @@ struct LampPath {
 
 constexpr int lamp_parts = 8;
 
-LampPath lamp_path(const LampLight& lamp, const WaterRays& rays) {
+/// Tangent of half of an angle of less than a right one.
+SHOAL_INLINE float half_angle(float tangent) {
+  return tangent / (1 + std::sqrt(1 + tangent * tangent));
+}
+
+SHOAL_INLINE void find_path(const LampLight& lamp, const WaterRays& rays, LampPath& path) {
+  static_assert(lamp_parts == 8);
   constexpr float nearest_m = 0.02F;
-  LampPath path;
+  const float x = lamp.position_W.x(), y = lamp.position_W.y(), z = lamp.position_W.z();
+  const float squared = lamp.position_W.squaredNorm();
   for (int i = 0; i < WaterRays::size; ++i) {
-    const Eigen::Vector3f direction(rays.direction_W[0][i], rays.direction_W[1][i], rays.direction_W[2][i]);
-    const float along_m = direction.dot(lamp.position_W);
-    const float off_m = std::sqrt(std::max(lamp.position_W.squaredNorm() - along_m * along_m, nearest_m * nearest_m));
-    const float end_m = std::min({rays.crossing_m[i], rays.range_m[i], farthest_m});
-    const float first = std::atan(-along_m / off_m), last = std::atan((end_m - along_m) / off_m);
+    const float along_m = x * rays.direction_W[0][i] + y * rays.direction_W[1][i] + z * rays.direction_W[2][i];
+    const float off_m = std::sqrt(larger(squared - along_m * along_m, nearest_m * nearest_m));
+    const float end_m = smaller(smaller(rays.crossing_m[i], rays.range_m[i]), farthest_m);
+    // The whole angle is halved, down to that of half a part.
+    const float first = -along_m / off_m, last = (end_m - along_m) / off_m;
+    const float secants = std::sqrt((1 + first * first) * (1 + last * last));
+    const float half = (last - first) / larger(secants + 1 + first * last, 1e-6F * secants);
+    const float part = half_angle(half_angle(half)), shift = half_angle(part), square = part * part;
     path.along_m[i] = along_m, path.off_m[i] = off_m;
-    path.turn[i] = (last - first) / lamp_parts;
-    path.turn_tan[i] = std::tan(path.turn[i]);
-    path.first_tan[i] = std::tan(first + 0.5F * path.turn[i]);
+    path.turn[i] = part * (1 + square * (-1.0F / 3 + square * (0.2F + square * (-1.0F / 7 + square / 9))));
+    path.turn_tan[i] = part;
+    path.first_tan[i] = (first + shift) / (1 - first * shift);
   }
-  return path;
 }
 
 /// Adds what the water scatters of the light of a lamp.
@@ -263,7 +272,11 @@ SHOAL_INLINE void lamps_all(const WaterLight& water, std::span<const LampLight> 
   const float attenuation[3] = {water.attenuation[0], water.attenuation[1], water.attenuation[2]};
   show_lit(attenuation, water.is_under, rays);
   if (!water.is_under) return;
-  for (const LampLight& lamp : lamps) scatter(water, lamp, lamp_path(lamp, rays), rays);
+  LampPath path;
+  for (const LampLight& lamp : lamps) {
+    find_path(lamp, rays, path);
+    scatter(water, lamp, path, rays);
+  }
 }
 
 #undef SHOAL_INLINE

@@ -50,8 +50,8 @@ class WaterView {
   bool has_caustics() const { return has_caustics_; }
   /// Returns the factor of the sunlight at a point by the focusing of ripples; 1 above the water.  Its mean over a
   /// horizontal plane is 1.  Ripples of lengths from 0.2 to 2 m share the mean square slope of the wind (Cox and Munk
-  /// 1954); the light is that of their curvature, to first order in the depth, with a log-normal distribution (as in
-  /// Shen et al. 2012), and smooths out with depth.
+  /// 1954); the light is that of their curvature, to first order in the depth, with a log-normal distribution, and
+  /// smooths out with depth.
   float caustic(const Vector3d& p_W) const;
   /// Draws particles before a camera under water into rows of its image.
   void draw_particles(const Pose& X_WS, const Optics& optics, double refraction, std::span<const LampLight> lamps,
