@@ -442,15 +442,19 @@ void Camera::visit_state(sim::StateArchive& archive) {
     archive.expect_count(image.data.size(), "values in an image");
     archive.raw(image.data.data(), image.data.size() * sizeof image.data[0]);
   };
+  const bool has_vectors = params_.image == Kind::normals || params_.image == Kind::flow;
   // Exposed part of the next image.
   if (archive.restoring()) renderer_->clear(in_progress_);
   if (next_exposure_ > 0) {
     visit(in_progress_.light);
     visit(in_progress_.depth_m);
     visit(in_progress_.labels);
-    visit(in_progress_.vectors);
+    if (has_vectors) visit(in_progress_.vectors);
   }
-  image_digest_.visit(archive, levels_.data, depth_m_.data, frame_.labels.data, frame_.vectors.data);
+  if (has_vectors)
+    image_digest_.visit(archive, frame_.vectors.data);
+  else
+    image_digest_.visit(archive, levels_.data, depth_m_.data, frame_.labels.data);
 }
 
 std::string Camera::label_text() const {
