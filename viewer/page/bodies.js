@@ -104,7 +104,7 @@ export class Bodies {
         if (part.shape === 'plane') this.addPlane(body, part);
         const shape = ['mesh', 'terrain'].includes(part.shape) ? {key: part.asset, scale: [1, 1, 1]} :
             part.shape === 'plane'                             ? null :
-                                                                 simpleShape(part, this.list.length > 300);
+                                                                 simpleShape(part, this.list.length > 60);
         if (!shape) continue;
         const key = `${shape.key} ${Surfaces.key(part)} ${body.fixed}`;
         if (!groups.has(key)) groups.set(key, {part, fixed: body.fixed, geometry: shape.geometry, instances: []});

@@ -167,21 +167,22 @@ export class Depths {
     this.frame.end();
   }
 
-  addDrop({name, at, radius_m}, color, {camera, height_px, level_m, groundAt}) {
+  addDrop({name, at, radius_m}, color, {vehicles, camera, height_px, level_m, groundAt}) {
     if (!Number.isFinite(at.x)) return;
     const bottom = groundAt(at.x, at.y), depth_m = level_m - at.z;
     if (bottom > level_m) return;  // on land
     const meter_px =
         camera.projectionMatrix.elements[5] * height_px / 2 / Math.max(0.1, at.distanceTo(camera.position));
-    const ring_m = RING_PX / meter_px, deep = depth_m > Math.max(0.2, SURFACE_RADII * radius_m);
+    // The circles of many vehicles take long to draw, and hide them.
+    const ring_m = vehicles.length > WRITTEN_MAX ? 0 : RING_PX / meter_px, deep = depth_m > Math.max(0.2, SURFACE_RADII * radius_m);
     if (deep) {
       this.drops.add(at.x, at.y, at.z, at.x, at.y, level_m, color);
-      this.drops.ring(at, level_m, ring_m, color);
+      if (ring_m > 0) this.drops.ring(at, level_m, ring_m, color);
     }
     const altitude_m = Number.isFinite(bottom) ? at.z - bottom : null;
     if (altitude_m !== null && altitude_m > 0) {
       this.drops.add(at.x, at.y, at.z, at.x, at.y, bottom, color);
-      this.drops.ring(at, bottom, ring_m, color);
+      if (ring_m > 0) this.drops.ring(at, bottom, ring_m, color);
     }
     this.items.push({name, at, depth_m: deep ? depth_m : 0, altitude_m});
   }
