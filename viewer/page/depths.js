@@ -174,7 +174,8 @@ export class Depths {
     const meter_px =
         camera.projectionMatrix.elements[5] * height_px / 2 / Math.max(0.1, at.distanceTo(camera.position));
     // The circles of many vehicles take long to draw, and hide them.
-    const ring_m = vehicles.length > WRITTEN_MAX ? 0 : RING_PX / meter_px, deep = depth_m > Math.max(0.2, SURFACE_RADII * radius_m);
+    const ring_m = vehicles.length > WRITTEN_MAX ? 0 : RING_PX / meter_px,
+          deep = depth_m > Math.max(0.2, SURFACE_RADII * radius_m);
     if (deep) {
       this.drops.add(at.x, at.y, at.z, at.x, at.y, level_m, color);
       if (ring_m > 0) this.drops.ring(at, level_m, ring_m, color);
