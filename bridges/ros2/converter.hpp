@@ -75,7 +75,7 @@ struct ConverterContext {
   const Surfaces& surfaces();
   /// Forgets them; `scene`: JSON of the next ones, none: as before.
   void renew_surfaces(const std::optional<std::string>& scene = {});
-  std::int64_t moving_surfaces_utime = std::numeric_limits<std::int64_t>::min() / 2;  ///< when they were sent
+  std::optional<std::int64_t> moving_surfaces_utime;  ///< when they were sent
   bool fixed_surfaces_are_sent = false;
 
  private:

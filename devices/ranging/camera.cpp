@@ -91,6 +91,7 @@ double baseline_of(const Camera::Params& params, const sim::DeviceContext& conte
   const Camera::Params& other = of_left->params;
   check(params.readout_s == other.readout_s && params.exposure_time_s == other.exposure_time_s,
         "its readout_s and exposure_time_s must be those of " + name);
+  check(params.flat_port == other.flat_port, "its flat_port must be that of " + name);
   check(right.rate_hz == left->rate_hz && right.phase_s && right.phase_s == left->phase_s,
         "it needs rate_hz and phase_s, equal to those of " + name);
   check(right.body == left->body, "it must be on the body of " + name);
@@ -190,6 +191,9 @@ void Camera::Params::check_kind(sim::ParamReader& in) const {
   if (color_balance && image != Kind::rgb) in.error("exposure", "white_balance and color_gains are for images rgb");
   if (water && !takes_light(image)) in.error("water", "'water' is for images rgb and grey");
   if (!lamps.empty() && !takes_light(image)) in.error("lamps", "'lamps' is for images rgb and grey");
+  const bool vectors = image == Kind::normals || image == Kind::flow;
+  for (const char* key : {"noise", "depth_noise_per_m", "full_well_electrons", "antialias", "exposure"})
+    if (vectors && in.has(key)) in.error(key, fmt::format("'{}' is not for images normals and flow", key));
   if (image == Kind::flow && encoding != Encoding::raw) in.error("encoding", "'encoding' must be raw for images flow");
   if (image == Kind::flow && readout_s > 0) in.error("readout_s", "'readout_s' is not for images flow");
   if (image == Kind::flow && flat_port) in.error("flat_port", "'flat_port' is not for images flow");
@@ -242,8 +246,8 @@ std::optional<sim::FieldOfView> Camera::field_of_view() const {
   return view;
 }
 
-int Camera::rays_per_side() const {
-  return takes_light(params_.image) ? params_.antialias : 1;  // depths and labels must not be averaged
+int Camera::rays_per_side(const Params& params) {
+  return takes_light(params.image) ? params.antialias : 1;  // depths and labels must not be averaged
 }
 
 void Camera::zoom(double fov_rad) {
@@ -260,15 +264,12 @@ void Camera::change(const Params& params) {
     if (params.optics.fov_rad != given_fov_rad_ || next.optics.text() != params_.optics.text())
       throw std::runtime_error("its lens belongs to a zooming camera, and cannot be set");
   }
-  given_fov_rad_ = params.optics.fov_rad;
-  params_ = std::move(next);
-  water_.reset();
-  if (params_.water) {
-    if (!world_.medium().has_water())
-      sim::throw_config_error(config_.place, "vehicle '" + vehicle_.name() + "': device '" + config_.name + "'",
-                              "'water': the world has no water");
-    water_ = std::make_unique<sim::WaterView>(world_.medium(), world_.config().light, *water_look());
-  }
+  if (next.water && !world_.medium().has_water())
+    sim::throw_config_error(config_.place, "vehicle '" + vehicle_.name() + "': device '" + config_.name + "'",
+                            "'water': the world has no water");
+  // Nothing changes unless all can be made.
+  std::unique_ptr<sim::WaterView> water;
+  if (next.water) water = std::make_unique<sim::WaterView>(world_.medium(), world_.config().light, *water_look(next));
   SharedByCameras& shared = shared_.of(shared_by_cameras);
   sim::RenderOptions options;
   options.kind = render_kind(params.image);
@@ -277,12 +278,18 @@ void Camera::change(const Params& params) {
   options.range_max_m = params.range_max_m;
   options.depth_along_ray = params.depth_along == DepthAlong::ray;
   options.light = world_.config().light;
-  options.water = water_.get();
-  options.with_depth = water_ && water_->has_particles();
-  for (const sim::LampConfig& lamp : params_.lamps) options.lamps.push_back(lamp.lamp(X_BS_));
-  dry_rays_ = shared.rays_of(params_.optics, rays_per_side());
-  wet_rays_ = params_.flat_port ? shared.rays_of(params_.optics, rays_per_side(), &*params_.flat_port) : nullptr;
-  renderer_ = std::make_unique<sim::Renderer>(physics_, dry_rays_, options, shared.textures);
+  options.water = water.get();
+  options.with_depth = water && water->has_particles();
+  for (const sim::LampConfig& lamp : next.lamps) options.lamps.push_back(lamp.lamp(X_BS_));
+  auto dry_rays = shared.rays_of(next.optics, rays_per_side(next));
+  auto wet_rays = next.flat_port ? shared.rays_of(next.optics, rays_per_side(next), &*next.flat_port) : nullptr;
+  auto renderer = std::make_unique<sim::Renderer>(physics_, dry_rays, options, shared.textures);
+  given_fov_rad_ = params.optics.fov_rad;
+  params_ = std::move(next);
+  renderer_ = std::move(renderer);  // before the water that the old one uses
+  water_ = std::move(water);
+  dry_rays_ = std::move(dry_rays);
+  wet_rays_ = std::move(wet_rays);
   lens_moved_ = false;
   renderer_->clear(in_progress_);
   next_exposure_ = 0;
@@ -297,8 +304,8 @@ int Camera::exposures() const {
 void Camera::expose(int exposure, const sim::Pose& X_WS) {
   // The rays of a lens that moves are its own, and are made only when they are needed.
   if (lens_moved_) {
-    dry_rays_ = SharedByCameras::make_rays(params_.optics, rays_per_side(), nullptr);
-    if (wet_rays_) wet_rays_ = SharedByCameras::make_rays(params_.optics, rays_per_side(), &*params_.flat_port);
+    dry_rays_ = SharedByCameras::make_rays(params_.optics, rays_per_side(params_), nullptr);
+    if (wet_rays_) wet_rays_ = SharedByCameras::make_rays(params_.optics, rays_per_side(params_), &*params_.flat_port);
     renderer_->set_rays(dry_rays_);
   }
   lens_moved_ = false;
@@ -371,13 +378,13 @@ void Camera::measure(const sim::SenseContext& context) {
   develop();
 }
 
-std::optional<sim::WaterLook> Camera::water_look() const {
-  if (!params_.water) return std::nullopt;
+std::optional<sim::WaterLook> Camera::water_look(const Params& params) const {
+  if (!params.water) return std::nullopt;
   sim::WaterLook look;
-  look.optics = params_.water->optics();
-  look.waves_range_m = std::min(look.waves_range_m, params_.range_max_m);
-  look.caustics = params_.water->has_caustics();
-  look.particles_per_m3 = params_.water->particles();
+  look.optics = params.water->optics();
+  look.waves_range_m = std::min(look.waves_range_m, params.range_max_m);
+  look.caustics = params.water->has_caustics();
+  look.particles_per_m3 = params.water->particles();
   look.seed = static_cast<std::uint64_t>(world_.config().run.seed);
   return look;
 }
@@ -388,12 +395,15 @@ void Camera::develop() {
                  ? sim::gray_world_gains(frame_.light)
                  : sim::LinearColor(params_.exposure.color_gains.cast<float>());
   const bool balanced = balance_ != sim::LinearColor::Ones();
+  digital_gain_ = 1;
   if (params_.exposure.automatic) {
     sim::FloatImage seen = frame_.light;
     for (std::size_t i = 0; balanced && i < seen.data.size(); ++i)
       seen.data[i] *= balance_[static_cast<Eigen::Index>(i % 3)];
     constexpr float max_gain = 64, max_gain_in_water = 1e4F;
     gain_ *= sim::auto_gain(seen, water_ ? max_gain_in_water : max_gain);
+    // A sensor is exposed so that no color fills its pixels; the rest is done with its numbers.
+    if (balanced) digital_gain_ = std::max(1.0F, 2 * gain_ * sim::brightest_mean(frame_.light));
   }
   if (params_.image == Kind::grey)
     light_ = sim::grey_of(frame_.light);
@@ -406,10 +416,10 @@ void Camera::add_sensor_noise(sim::Random& random) {
   const double full = params_.full_well_electrons;
   const double read_variance = params_.read_noise_electrons * params_.read_noise_electrons;
   for (std::size_t i = 0; i < light_.data.size(); ++i) {
-    const double electrons = full * std::clamp(static_cast<double>(gain_ * light_.data[i]), 0.0, 1.0);
+    const double electrons = full * std::clamp(static_cast<double>(gain_ / digital_gain_ * light_.data[i]), 0.0, 1.0);
     const double counted = electrons + std::sqrt(electrons + read_variance) * random.gaussian();
     const float balance = light_.channels == 3 ? balance_[static_cast<Eigen::Index>(i % 3)] : 1;
-    levels_.data[i] = sim::srgb_from_linear(balance * static_cast<float>(counted / full));
+    levels_.data[i] = sim::srgb_from_linear(digital_gain_ * balance * static_cast<float>(counted / full));
   }
 }
 

@@ -104,7 +104,7 @@ class Camera final : public sim::Sensor {
   /// Returns the light of the last image, rgb or grey, before exposure, balance of colors, noise and levels.
   const sim::FloatImage& light() const { return light_; }
   /// Returns the water in the images; empty: it is invisible.
-  std::optional<sim::WaterLook> water_look() const;
+  std::optional<sim::WaterLook> water_look(const Params& params) const;
   /// Returns the names of the labels in the last image, one line `LABEL NAME` each.
   std::string label_text() const;
 
@@ -137,7 +137,7 @@ class Camera final : public sim::Sensor {
   sim::Time step_;
   int own_group_;
   /// Returns the rays along each side of a pixel.
-  int rays_per_side() const;
+  static int rays_per_side(const Params& params);
 
   Params params_;
   double given_fov_rad_ = 0;   // that of the parameters, before it zooms
@@ -156,6 +156,7 @@ class Camera final : public sim::Sensor {
   sim::Time swept_at_{0}, next_sample_{0};  // for rays()
   sim::FloatImage light_;                   // last image without noise, in color or grey
   float gain_ = 1;
+  float digital_gain_ = 1;                               // the part of it that is not exposure
   sim::LinearColor balance_ = sim::LinearColor::Ones();  // gains of the colors
   sim::Image8 levels_;
   sim::FloatImage depth_m_;

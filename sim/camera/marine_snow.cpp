@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace sim {
 
@@ -36,14 +37,15 @@ Numbers numbers_of(std::uint64_t seed, std::int64_t x, std::int64_t y, std::int6
   return numbers;
 }
 
-/// Turns a direction in the water into the one behind a flat port.
-Vector3d behind_port(const Vector3d& p_S, double refraction) {
+/// Turns a direction in the water into the one behind a flat port; nothing for one that no ray behind it has.
+std::optional<Vector3d> behind_port(const Vector3d& p_S, double refraction) {
   if (refraction == 1) return p_S;
   const double across = std::hypot(p_S.y(), p_S.z()), length = p_S.norm();
   const double sine = refraction * across / length;
-  if (sine >= 1 || across == 0) return p_S;
+  if (p_S.x() <= 0 || sine >= 1) return std::nullopt;
+  if (across == 0) return p_S;
   const double scale = length * sine / across;
-  return {length * std::sqrt(1 - sine * sine), scale * p_S.y(), scale * p_S.z()};
+  return Vector3d(length * std::sqrt(1 - sine * sine), scale * p_S.y(), scale * p_S.z());
 }
 
 /// Light of a particle, and where it is in the image.
@@ -96,7 +98,10 @@ void MarineSnow::draw(const Pose& X_WS, double time_s, const Optics& optics, dou
         const double away_m = middle_S.norm();
         if (away_m > reach_of_sight_m + reach_m) continue;
         if (away_m > 2 * reach_m) {
-          const auto at_px = optics.project(behind_port(middle_S, refraction));
+          const auto behind_S = behind_port(middle_S, refraction);
+          // A cell may reach into the cone behind a port although its middle is outside.
+          if (!behind_S && middle_S.x() < -reach_m) continue;
+          const auto at_px = behind_S ? optics.project(*behind_S) : Vector2d(0.5 * optics.width(), target.first);
           const double wide_px = 2 * reach_m / (away_m - reach_m) * focal_px + 2 * max_radius_px;
           if (!at_px || at_px->x() < -wide_px || at_px->x() > optics.width() + wide_px ||
               at_px->y() < target.first - wide_px || at_px->y() > target.end + wide_px)
@@ -109,9 +114,12 @@ void MarineSnow::draw(const Pose& X_WS, double time_s, const Optics& optics, dou
           const Vector3d p_W = corner + cell_size_m * Vector3d(u, v, w) - eye_grid;  // relative to the camera
           const Vector3d p_S = R_SW * p_W;
           const double distance_m = p_S.norm();
-          if (distance_m < near_m || distance_m > reach_of_sight_m) continue;
-          const auto at_px = optics.project(behind_port(p_S, refraction));
-          if (!at_px || at_px->y() < target.first - max_radius_px || at_px->y() > target.end + max_radius_px) continue;
+          if (distance_m < near_m || distance_m > reach_of_sight_m || p_S.x() < target.port_m) continue;
+          const auto behind_S = behind_port(p_S, refraction);
+          const auto at_px = behind_S ? optics.project(*behind_S) : std::nullopt;
+          if (!at_px || at_px->y() < target.first - max_radius_px || at_px->y() > target.end + max_radius_px ||
+              at_px->x() < -max_radius_px || at_px->x() > optics.width() + max_radius_px)
+            continue;
           if (water.eye_depth_m < p_W.z()) continue;  // above the surface
           // Small ones are more: radii with a density that falls with the third power.
           const double span = std::pow(min_radius_m / max_radius_m, 2);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "sim/base/math.hpp"
@@ -26,6 +27,8 @@ class MarineSnow {
     bool depth_along_ray = false;
     int first = 0, end = 0;  ///< rows
     float weight = 1;        ///< of this exposure
+    /// Particles before it, along the axis of the lens, are in a housing.
+    double port_m = std::numeric_limits<double>::lowest();
   };
 
   bool empty() const { return per_m3_ <= 0; }

@@ -237,7 +237,7 @@ std::optional<Vector2d> Optics::project(const Vector3d& p_S) const {
 }
 
 void FlatPortConfig::read(ParamReader& in) {
-  in.read("distance_m", distance_m, between(0, 1), "from the entrance pupil of the lens to the glass");
+  in.read("distance_m", distance_m, between(0, 0.3), "from the entrance pupil of the lens to the glass");
   in.read("glass_m", glass_m, between(0, 0.2), "thickness of the glass");
   in.read("glass_index", glass_index, between(1, 3), "refractive index of the glass; acrylic: 1.49");
 }

@@ -88,6 +88,7 @@ struct FlatPortConfig {
   double distance_m = 0.02;  ///< from the entrance pupil of the lens to the glass
   double glass_m = 0.005;    ///< thickness of the glass
   double glass_index = 1.49;
+  bool operator==(const FlatPortConfig&) const = default;
   void read(ParamReader& in);
 };
 

@@ -148,6 +148,7 @@ void Renderer::render_rows(const Pose& X_WS, int first, int end, float weight, F
   while (2 * high * n <= 8 && 2 * high <= end - first) high *= 2;
   add_surfaces();
   lamps_.clear();
+  eye_W_ = X_WS.translation();
   for (const Lamp& lamp : options_.lamps) {
     const Vector3d p_SL_W = X_WS.linear() * lamp.X_SL.translation();
     const Vector3d axis_W = X_WS.linear() * lamp.X_SL.linear().col(0);
@@ -165,8 +166,10 @@ void Renderer::render_rows(const Pose& X_WS, int first, int end, float weight, F
   else
     for (std::size_t i = 0; i < rows_of_tiles; ++i) render_row(i);
   if (options_.kind == ImageKind::color && options_.water && options_.water->has_particles() && options_.with_depth)
-    options_.water->draw_particles(X_WS, *rays_->optics, rays_->refraction, lamps_,
-                                   {frame.light, frame.depth_m, options_.depth_along_ray, first, end, weight});
+    options_.water->draw_particles(
+        X_WS, *rays_->optics, rays_->refraction, lamps_,
+        {frame.light, frame.depth_m, options_.depth_along_ray, first, end, weight,
+         rays_->starts_S.empty() ? std::numeric_limits<double>::lowest() : rays_->starts_S.front().x()});
 }
 
 void Renderer::render_tiles(const Pose& X_WS, int row, int high, int wide, float weight, Frame& frame) const {
@@ -355,8 +358,7 @@ LinearColor Renderer::shade(Tile& tile, int number, float footprint_m) const {
   const float open = 0.5F * (1 + normal.z());
   LinearColor light = own * (sky_strength_ * (0.45F + 0.55F * open));
   const float toward = normal.dot(sky_.to_sun_W());
-  if (!lamps_.empty())
-    tile.lit[static_cast<std::size_t>(number)] = lamp_light(own, normal, hit.range_m * ray.direction_W);
+  if (!lamps_.empty()) tile.lit[static_cast<std::size_t>(number)] = lamp_light(own, normal, p_W - eye_W_);
   // Add diffuse light of the sun and the highlight (Blinn 1977).
   if (!sky_.sun_is_up() || tile.in_shadow[number] != 0 || toward <= 0) return light;
   const LinearColor diffuse = own.cwiseProduct(sky_.sun()) * toward;
@@ -483,16 +485,31 @@ float auto_gain(const FloatImage& light, float max_gain) {
   return static_cast<float>(std::clamp(0.18 / std::max(mean, 1e-6), 1.0 / 64, static_cast<double>(max_gain)));
 }
 
-LinearColor gray_world_gains(const FloatImage& light) {
-  double sums[3] = {0, 0, 0};
+namespace {
+
+std::array<double, 3> sums_of(const FloatImage& light) {
+  std::array<double, 3> sums{};
   for (std::size_t i = 0; i + 2 < light.data.size(); i += 3)
     for (std::size_t channel = 0; channel < 3; ++channel) sums[channel] += light.data[i + channel];
+  return sums;
+}
+
+}  // namespace
+
+float brightest_mean(const FloatImage& light) {
+  const auto sums = sums_of(light);
+  return static_cast<float>(3 * *std::max_element(sums.begin(), sums.end()) /
+                            static_cast<double>(std::max<std::size_t>(1, light.data.size())));
+}
+
+LinearColor gray_world_gains(const FloatImage& light) {
+  const auto sums = sums_of(light);
   const double brightest = std::max({sums[0], sums[1], sums[2]});
   if (!(brightest > 0)) return LinearColor::Ones();
   float means[3];
   LinearColor gains;
   for (int i = 0; i < 3; ++i) {
-    means[i] = static_cast<float>(sums[i] / brightest);
+    means[i] = static_cast<float>(sums[static_cast<std::size_t>(i)] / brightest);
     gains[i] = 1 / std::max(means[i], 1.0F / 64);
   }
   const float balanced[3] = {gains[0] * means[0], gains[1] * means[1], gains[2] * means[2]};

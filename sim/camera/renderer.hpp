@@ -149,6 +149,7 @@ class Renderer {
   SkyLight sky_;
   Vector3d to_sun_W_;
   float sky_strength_;
+  Vector3d eye_W_ = Vector3d::Zero();
   std::vector<LampLight> lamps_;  // in the directions of the world, for the rows being rendered
   CameraMotion motion_;
 };
@@ -164,6 +165,8 @@ void develop_rows_dithered(const FloatImage& light, const LinearColor& gain, int
 void develop_rows(const FloatImage& light, float gain, int first, int end, Image8& image);
 /// Returns the gain that brings the mean luminance to middle grey, 18 %, from 1/64 to `max_gain`.
 float auto_gain(const FloatImage& light, float max_gain = 64);
+/// Returns the mean of the color that is brightest.
+float brightest_mean(const FloatImage& light);
 /// Returns gains of the colors that give all the same mean, in the mean of the luminance 1 (gray world, Buchsbaum
 /// 1980).  None is more than 64 times another.
 LinearColor gray_world_gains(const FloatImage& light);

@@ -183,13 +183,13 @@ SHOAL_INLINE void light_all(const WaterLight& water, const SkyLight& sky, WaterR
     light_above(constants, copy[0], rays);
 }
 
-/// Adds what lamps light up, seen through the water.
+/// Adds what lamps light up, seen through the water.  Light of lamps above the water has the same way there and back.
 SHOAL_INLINE void show_lit(const float (&attenuation)[3], bool is_under, WaterRays& rays) {
   for (int color = 0; color < 3; ++color)
     for (int i = 0; i < WaterRays::size; ++i) {
       const bool leaves = rays.crossing_m[i] < rays.range_m[i];
       const float wet_m = is_under ? rays.range_m[i] : rays.range_m[i] - rays.crossing_m[i];
-      const float path_m = smaller(is_under || leaves ? wet_m : 0, farthest_m);
+      const float path_m = smaller(is_under ? wet_m : leaves ? 2 * wet_m : 0, farthest_m);
       const float seen = exponential(-attenuation[color] * path_m) * rays.lit[color][i];
       rays.light[color][i] += is_under && leaves ? 0 : seen;
     }

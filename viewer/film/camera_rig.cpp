@@ -223,8 +223,11 @@ SceneView view_of_camera(const sim::World& world, const std::string& name) {
     view.optics = camera->params().optics;
     view.X_WS = body.X_WB() * config.X_BS();
     view.options = camera->render_options();
+    // Vectors are no picture.
+    if (view.options.kind == sim::ImageKind::normals || view.options.kind == sim::ImageKind::flow)
+      view.options.kind = sim::ImageKind::color;
     view.grey = camera->params().image == devices::Camera::Kind::grey;
-    view.water = camera->water_look();
+    view.water = camera->water_look(camera->params());
     view.follows_daylight = !view.water;
     view.flat_port = camera->params().flat_port;
     view.antialias = camera->params().antialias;

@@ -15,12 +15,13 @@ struct RawFormat {
   const char* encoding;
 };
 
-constexpr std::int32_t format_float = 842221382;
-/// FourCC codes of bot_core, and the encodings of sensor_msgs/image_encodings.hpp.
-constexpr RawFormat raw_formats[] = {
-    {1497715271, 1, "mono8"}, {859981650, 3, "rgb8"}, {909199180, 2, "mono16"}, {format_float, 4, "32FC1"}};
 constexpr std::int32_t format_mjpeg = 1196444237;
 constexpr std::int32_t format_png = 'P' | 'N' << 8 | 'G' << 16 | ' ' << 24;
+constexpr std::int32_t format_16 = 909199180;
+constexpr std::int32_t format_float = 842221382;
+/// FourCC codes of bot_core, and the encodings of sensor_msgs/image_encodings.hpp.
+constexpr RawFormat raw_formats[] = {{1497715271, 1, "mono8"},   {859981650, 3, "rgb8"},  {format_16, 2, "mono16"},
+                                     {format_float, 4, "32FC1"}, {844641094, 8, "32FC2"}, {861418310, 12, "32FC3"}};
 
 void put_image(CdrWriter& out, std::int32_t height, std::int32_t width, const char* encoding, std::int32_t step,
                std::span<const std::uint8_t> data) {
@@ -34,7 +35,7 @@ void put_image(CdrWriter& out, std::int32_t height, std::int32_t width, const ch
 
 /// Returns whether 16-bit pixels are depths in mm (REP 118) or labels, and no brightness.
 bool is_number_image(const shoal::image_t& message) {
-  return message.pixelformat != format_float &&
+  return (message.pixelformat == format_16 || message.pixelformat == format_png) &&
          std::any_of(message.metadata.begin(), message.metadata.end(),
                      [](const auto& entry) { return entry.key == "unit" || entry.key == "labels"; });
 }

@@ -101,7 +101,7 @@ constexpr std::array columns{PointColumn{"x", 0, point_float32}, PointColumn{"y"
 constexpr std::uint32_t point_bytes = 16;
 
 /// Shortest time between two clouds of the bodies that move: each has all points.
-constexpr std::int64_t period_us = 1'000'000;
+constexpr std::uint64_t period_us = 1'000'000;
 
 /// To 1/256 m: the zeros behind make a compressed file smaller.
 float rounded(float value_m) {
@@ -121,8 +121,11 @@ void put_points(CdrWriter& out, std::int64_t utime, std::span<const SurfacePoint
 }
 
 bool write_moving_surfaces(const shoal::sim_bodies_t& message, ConverterContext& context, CdrWriter& out) {
-  const std::int64_t since_us = message.utime - context.moving_surfaces_utime;
-  if (message.revision != context.scene_revision || (since_us >= 0 && since_us < period_us)) return false;
+  // Of earlier times, after a rewind, the difference is huge.
+  const auto since_us =
+      static_cast<std::uint64_t>(message.utime) - static_cast<std::uint64_t>(context.moving_surfaces_utime.value_or(0));
+  if (message.revision != context.scene_revision) return false;
+  if (context.moving_surfaces_utime && since_us < period_us) return false;
   std::vector<SurfacePoint> points;
   for (std::size_t i = 0; i < static_cast<std::size_t>(message.count); ++i) {
     const auto body = context.surfaces().moving.find(message.body[i]);

@@ -168,7 +168,7 @@ void Ros2Door::take_message(const Received& message) {
 bool Ros2Door::belongs_to_ticks(const std::string& channel) {
   const auto& ticked = Ros2Lockstep::world_channels;
   if (channel.starts_with("sim.")) return std::find(ticked.begin(), ticked.end(), channel) != ticked.end();
-  return rates_hz_.contains(channel) || !report_channels();
+  return !knows_state_ || rates_hz_.contains(channel) || !report_channels();
 }
 
 void Ros2Door::publish(const Received& message) {
@@ -192,6 +192,7 @@ void Ros2Door::learn(const Received& message) {
     for (const std::string& name : state.vehicle)
       if (vehicles_.size() < max_topics) vehicles_.try_emplace(name);
     present_ = state.vehicle;
+    knows_state_ = true;
     services_.know(std::move(state));
   } else if (message.channel == "sim.vehicle") {
     learn_vehicle(shoal::decode<shoal::sim_vehicle_t>(message.payload, Finite::any));
@@ -318,10 +319,13 @@ std::int32_t Ros2Door::ask(const std::string& command, double value, const std::
 bool Ros2Door::wants(const Topic& topic) {
   if (topic.encoding != "cdr" || (topic.name == "/tf" && !options_.publishes_tf)) return false;
   writers_.resize(std::max(writers_.size(), topic.number + 1));
+  depths_.resize(writers_.size());
   Endpoint& writer = writers_[topic.number];
   if (writer == 0) {
     try {
-      writer = participant_.add_writer(dds_topic(topic.name), dds_type_name(topic.type), qos_of(topic));
+      const DdsQos qos = qos_of(topic);
+      writer = participant_.add_writer(dds_topic(topic.name), dds_type_name(topic.type), qos);
+      depths_[topic.number] = static_cast<std::uint32_t>(qos.depth);
       graph_changed_ = true;
     } catch (const BusError& error) {
       writer = no_endpoint;
@@ -348,7 +352,7 @@ bool Ros2Door::take(const Topic& topic, std::span<const std::byte> bytes) {
   if (!participant_.write(writers_[topic.number], bytes))
     ++counts_.late;  // a node does not wait for it
   else if (is_in_tick_ && !topic.latched)
-    lockstep_->count(topic.name, static_cast<std::uint32_t>(qos_of(topic).depth));
+    lockstep_->count(topic.name, depths_[topic.number]);
   return true;
 }
 

@@ -110,7 +110,8 @@ class Ros2Door final : private TopicSink {
   DdsParticipant participant_;
   TopicTable table_;
   SimServices services_;
-  std::vector<Endpoint> writers_;  // by number of the topic; 0: none yet
+  std::vector<Endpoint> writers_;      // by number of the topic; 0: none yet
+  std::vector<std::uint32_t> depths_;  // of their histories
   std::map<Endpoint, CommandTopic> commands_;
   std::map<Endpoint, std::size_t> service_of_;
   std::vector<Endpoint> calls_, answers_;  // readers and writers of the services
@@ -120,6 +121,7 @@ class Ros2Door final : private TopicSink {
   std::map<std::string, double, std::less<>> rates_hz_;  // of the reports, by channel; 0: each step
   std::map<std::int32_t, std::string> questions_;        // by number of the request: the vehicle
   std::vector<std::string> present_;                     // vehicles, in the last state
+  bool knows_state_ = false;
   std::string world_;
   std::int64_t utime_ = 0;
   std::int32_t last_request_ = 0;

@@ -84,7 +84,9 @@ void TickExchange::take(const Tick& answer) {
   if (std::find(nodes_.begin(), nodes_.end(), answer.node) == nodes_.end()) return;
   for (const auto& [node, other] : answers_)
     for (const auto& [topic, count] : other.counts)
-      if (node != answer.node && contested_.empty() && answer.counts.contains(topic)) contested_ = topic;
+      if (const auto own = answer.counts.find(topic);
+          node != answer.node && contested_.empty() && count > 0 && own != answer.counts.end() && own->second > 0)
+        contested_ = topic;
   answers_[answer.node] = answer;
 }
 

@@ -112,6 +112,18 @@ TEST(CameraWater, BalancesItsColors) {
   EXPECT_NEAR(fixed[2], raw[2], 1e-9);
 }
 
+TEST(CameraWater, ShotNoiseKeepsTheLevelsOfBalancedColors) {
+  // At 60 m the blue of the clearest water is far above the mean: 1e9 electrons have no noise that shows.
+  const std::string deep = "medium: {water: {surface_m: 56}}\n";
+  const std::string keys = ", water: {jerlov: I, details: false}, exposure: {auto: true, white_balance: gray_world}";
+  Dive without(diver(keys, 3, deep)), with(diver(keys + ", full_well_electrons: 1e9", 3, deep));
+  const auto& expected = without.camera().levels().data;
+  const auto& levels = with.camera().levels().data;
+  ASSERT_EQ(levels.size(), expected.size());
+  EXPECT_GT(*std::max_element(expected.begin(), expected.end()), 50);
+  for (std::size_t i = 0; i < levels.size(); ++i) EXPECT_NEAR(int{levels[i]}, int{expected[i]}, 1) << i;
+}
+
 TEST(CameraWater, LampsBringBackRedInTheDark) {
   const std::string deep = "medium: {water: {surface_m: 200}}\n", lamp = ", lamps: [{strength: 5, beam_deg: 100}]";
   Dive dark(diver(plain, 2, deep)), lit(diver(plain + lamp, 2, deep));
@@ -169,6 +181,9 @@ TEST(CameraWater, SaysWhatIsWrongWithItsParameters) {
       {"lamps: [{color: white}]", "'color' must be in the form \"#rrggbb\""},
       {"exposure: {white_balance: gray_world, color_gains: [2, 1, 1]}", "either 'white_balance' or 'color_gains'"},
       {"image: grey, exposure: {white_balance: gray_world}", "white_balance and color_gains are for images rgb"},
+      {"image: flow, antialias: 2", "'antialias' is not for images normals and flow"},
+      {"image: normals, exposure: {auto: true}", "'exposure' is not for images normals and flow"},
+      {"flat_port: {distance_m: 0.5}", "'distance_m' must be >= 0 and <= 0.3"},
       {"image: flow, encoding: png", "must be raw for images flow"},
       {"flat_port: {glass_index: 0.5}", "'glass_index' must be >= 1 and <= 3"}};
   for (const auto& [keys, error] : cases)

@@ -11,8 +11,9 @@ namespace {
 struct Image {
   sim::FloatImage light{160, 120, 3}, depth_m{160, 120, 1};
 
-  void draw(double per_m3, std::uint64_t seed, int first, int end, double time_s = 0) {
-    std::fill(depth_m.data.begin(), depth_m.data.end(), std::numeric_limits<float>::infinity());
+  void draw(double per_m3, std::uint64_t seed, int first, int end, double time_s = 0, double refraction = 1,
+            float wall_m = std::numeric_limits<float>::infinity()) {
+    std::fill(depth_m.data.begin(), depth_m.data.end(), wall_m);
     sim::OpticsConfig lens;
     lens.width = 160, lens.height = 120, lens.fov_rad = 1.2;
     sim::WaterLight water;
@@ -20,8 +21,8 @@ struct Image {
     water.eye_depth_m = 10;
     water.attenuation.setConstant(0.1F);
     sim::MarineSnow(per_m3, seed)
-        .draw(sim::make_pose({3, 2, -10}, {0, 0, 0.4}), time_s, sim::Optics(lens), 1, water, sim::LinearColor::Ones(),
-              {}, {light, depth_m, false, first, end, 1});
+        .draw(sim::make_pose({3, 2, -10}, {0, 0, 0.4}), time_s, sim::Optics(lens), refraction, water,
+              sim::LinearColor::Ones(), {}, {light, depth_m, false, first, end, 1});
   }
   double sum() const {
     double all = 0;
@@ -44,6 +45,16 @@ TEST(MarineSnow, IsTheSameInStripsOfRows) {
   whole.draw(500, 1, 0, 120);
   for (int row = 0; row < 120; ++row) strips.draw(500, 1, row, row + 1);
   EXPECT_EQ(whole.light.data, strips.light.data);
+}
+
+TEST(MarineSnow, IsBehindAPortOnlyWhereRaysLook) {
+  Image straight, port, wall;
+  straight.draw(5000, 1, 0, 120), port.draw(5000, 1, 0, 120, 0, sim::water_index);
+  EXPECT_GT(port.sum(), 0);
+  // Its field of view is narrower by the index, in both directions; none is behind the camera.
+  EXPECT_LT(port.sum(), straight.sum());
+  wall.draw(5000, 1, 0, 120, 0, sim::water_index, 0.01F);
+  EXPECT_EQ(wall.sum(), 0);
 }
 
 TEST(MarineSnow, HasLightInProportionToItsDensity) {

@@ -104,6 +104,8 @@ TEST(TickExchangeTest, TellsWhenTwoNodesSendToOneTopic) {
   exchange.take(answer("a", 1, {{"/v/cmd", 1}}));
   exchange.take(answer("a", 1, {{"/v/cmd", 1}}));
   EXPECT_EQ(exchange.contested(), "");
+  exchange.take(answer("b", 1, {{"/v/cmd", 0}}));
+  EXPECT_EQ(exchange.contested(), "");
   exchange.take(answer("b", 1, {{"/v/cmd", 1}}));
   EXPECT_EQ(exchange.contested(), "/v/cmd");
 }
