@@ -136,8 +136,8 @@ describe('scene', () => {
       const probe =
           await until(page, (p) => p.time_us > 1.5e6 && p.vehicles[0].trail.points >= 2, 'a trail that grows');
       const [x, y] = probe.bodies[0].position;
-      // Interpolated positions stay within the chord of the circle: 33 ms at 0.63 m/s.
-      near(Math.hypot(x, y), 2, 0.01, 'radius of the circle');
+      // Interpolated positions stay within the chord of the circle: 33 ms at 0.63 m/s, on a busy machine up to 1.4 s.
+      near(Math.hypot(x, y), 2, 0.05, 'radius of the circle');
       near(Math.atan2(y, x), 2 * Math.PI * probe.time_us / 20e6, 0.02, 'angle at the shown time');
     });
   });

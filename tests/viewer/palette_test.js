@@ -12,7 +12,8 @@ it('is one table for page, films and plots', async () => {
   const cpp = await source('sim/base/vehicle_colors.hpp'), python = await source('python/shoal/plots.py');
   const table = /vehicle_colors\{([^}]*)\}/.exec(cpp)[1].match(/[0-9a-f]{6}/g).map((one) => `#${one}`);
   assert.deepEqual(table, VEHICLE_COLORS);
-  assert.equal(`#${/ estimate_color = 0x([0 - 9a - f]{6}) /.exec(cpp)[1]}`, ESTIMATE_COLOR);
+  const estimate = new RegExp('estimate_color = 0x([0-9a-f]{6})').exec(cpp)[1];
+  assert.equal(`#${estimate}`, ESTIMATE_COLOR);
   assert.deepEqual(/VEHICLE_COLORS = \(([^)]*)\)/.exec(python)[1].match(/#[0-9a-f]{6}/g), VEHICLE_COLORS);
 });
 

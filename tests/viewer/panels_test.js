@@ -247,7 +247,7 @@ describe('reach', () => {
       server.sendPairs([{from: 'auv1', to: 'auv2', sent: 1, received: 0, lost: {noise: 1}}]);
       await page.click('#data');
       for (const tab of ['plots', 'images', 'clocks', 'traffic', 'water']) {
-        await page.click(`#tab-${tab}`);
+        await (await page.waitForSelector(`#tab-${tab}`, {visible: true})).click();
         await show(page, server, 1);
         const out = await page.evaluate(() => {
           // What scrolls within its own box may be wider.
