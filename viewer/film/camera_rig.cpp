@@ -223,7 +223,7 @@ SceneView view_of_camera(const sim::World& world, const std::string& name) {
     view.optics = camera->params().optics;
     view.X_WS = body.X_WB() * config.X_BS();
     view.options = camera->render_options();
-    // Vectors are no picture.
+    // Vectors have no look: the camera is drawn in color.
     if (view.options.kind == sim::ImageKind::normals || view.options.kind == sim::ImageKind::flow)
       view.options.kind = sim::ImageKind::color;
     view.grey = camera->params().image == devices::Camera::Kind::grey;
